@@ -270,19 +270,18 @@ impl Solver<'_> {
         solutions: usize,
     ) -> Vec<f64> {
         let along = self.layout.along(self.model, self.given, at);
-        let mut first = right.to_vec();
-        factors.solve(&mut first);
-        let scales = self.layout.scales(&first, self.mass);
-        let mut out = vec![0.0; right.len()];
         let mut rest = right.to_vec();
+        factors.solve(&mut rest);
+        let scales = self.layout.scales(&rest, self.mass);
+        let mut out = vec![0.0; right.len()];
         for solution in 0..solutions {
             if solution > 0 {
                 rest = along.product(&out);
                 for (rest, right) in rest.iter_mut().zip(right) {
                     *rest = right - *rest;
                 }
+                factors.solve(&mut rest);
             }
-            factors.solve(&mut rest);
             let scaled: Vec<f64> = rest.iter().zip(&scales).map(|(x, s)| x / s).collect();
             let product = |z: &[f64]| {
                 let x: Vec<f64> = z.iter().zip(&scales).map(|(z, s)| z * s).collect();

@@ -9,7 +9,7 @@
 //! linear membrane strains.
 
 use super::element::{
-    gather, motion, motion_transpose, per_area, pull_per_area, scatter, share, weigh,
+    Deformed, motion, motion_transpose, per_area, pull_per_area, scatter, share, weigh,
 };
 use super::parts;
 use super::stiffness::{
@@ -24,8 +24,8 @@ use crate::model::finite::{FiniteElements, NODES, UNKNOWNS};
 fn both<S: Scalar>(finite: &FiniteElements<S>, (q, rate): (&[S], &[S])) -> [Vec<S>; 2] {
     let (mut heavy, mut viscous) = (vec![S::zero(); q.len()], vec![S::zero(); q.len()]);
     for (i, element) in finite.mesh.elements.iter().enumerate() {
-        let (x, r) = (gather(element, q), gather(element, rate));
-        let forces = weigh(element, per_area(finite, i), &motion(element, &r));
+        let (x, r) = (Deformed::of(element, q), Deformed::of(element, rate));
+        let forces = weigh(element, per_area(finite, i), &motion(element, &r.all));
         scatter(element, &motion_transpose(element, &forces), &mut heavy);
         let both = factors(finite, i);
         let strained = Strained::of(element, &x);
@@ -62,7 +62,7 @@ pub(super) fn matrices<S: Scalar>(
     (q, rate): (&[S], &[S]),
 ) -> [Vec<S>; 2] {
     let element = &finite.mesh.elements[i];
-    let (x, r) = (gather(element, q), gather(element, rate));
+    let (x, r) = (Deformed::of(element, q), Deformed::of(element, rate));
     let [thin, thick] = factors(finite, i).map(|factor| beta * factor);
     let n = element.coordinates.len();
     let (mut in_x, mut in_r) = (vec![S::zero(); n * n], vec![S::zero(); n * n]);
@@ -112,10 +112,10 @@ pub(crate) fn pull_damping(
         add_scaled(by_rate, factor, force);
     }
     for (i, element) in finite.mesh.elements.iter().enumerate() {
-        let [x, r, y] = [q, rate, psi].map(|x| gather(element, x));
-        let shared = share(element, &motion(element, &y));
+        let [x, r, y] = [q, rate, psi].map(|x| Deformed::of(element, x));
+        let shared = share(element, &motion(element, &y.all));
         let mut by_weight = [0.0; 2];
-        for (k, (own, v)) in shared.iter().zip(&motion(element, &r)).enumerate() {
+        for (k, (own, v)) in shared.iter().zip(&motion(element, &r.all)).enumerate() {
             by_weight[k / NODES] += alpha * own.dot(v);
         }
         pull_per_area(finite, i, by_weight, cot);
@@ -129,7 +129,12 @@ pub(crate) fn pull_damping(
         let mut force = [0.0; UNKNOWNS];
         for (moved, stress) in [(&r, &virtual_stress), (&y, &stress)] {
             let scaled = stress.map(|n| n * scale);
-            add_curved(element, &scaled, &element.slopes.times(moved), &mut force);
+            add_curved(
+                element,
+                &scaled,
+                &element.slopes.times(&moved.all),
+                &mut force,
+            );
         }
         scatter(element, &force, by_q);
     }

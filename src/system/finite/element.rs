@@ -27,11 +27,32 @@ pub(crate) fn gather<S: Scalar>(element: &ShellElement, q: &[S]) -> Local<S> {
     out
 }
 
-/// The unknowns without the rigid motion of the node in the middle; without a translation if not all nodes can turn.
-///
-/// Matrices that no rigid motion stresses have the same products with them. Their round-off is smaller, because it is
-/// relative to what deforms the element.
-pub(super) fn deformation<S: Scalar>(element: &ShellElement, x: &Local<S>) -> Local<S> {
+/// The unknowns of an element, or their rates, with what deforms the element.
+pub(super) struct Deformed<S> {
+    /// All of the motion.
+    pub all: Local<S>,
+    /// It without the rigid motion of the node in the middle; without its translation alone if not all nodes can turn.
+    ///
+    /// Matrices that no rigid motion stresses have the same products with both. The round-off with this is smaller,
+    /// because it is relative to what deforms the element.
+    pub deformation: Local<S>,
+}
+
+impl<S: Scalar> Deformed<S> {
+    pub(super) fn new(element: &ShellElement, all: Local<S>) -> Self {
+        Self {
+            deformation: deformation(element, &all),
+            all,
+        }
+    }
+
+    /// That of the coordinates of a body.
+    pub(super) fn of(element: &ShellElement, q: &[S]) -> Self {
+        Self::new(element, gather(element, q))
+    }
+}
+
+fn deformation<S: Scalar>(element: &ShellElement, x: &Local<S>) -> Local<S> {
     let mut theta = Vec3::<S>::zeros();
     for (turn, &x) in element.turns.iter().zip(&x[DISPLACEMENTS..]) {
         if turn.node == MIDDLE {

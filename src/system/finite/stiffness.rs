@@ -1,7 +1,7 @@
 //! Elastic forces of a body of finite elements, its strain energy, and their derivatives.
 
 use super::each::each;
-use super::element::{Local, deformation, gather, scatter};
+use super::element::{Deformed, Local, scatter};
 use super::parts;
 use crate::math::Scalar;
 use crate::math::slices::{add_scaled, dot, dot_by_four, vectorised};
@@ -22,9 +22,9 @@ pub(super) struct Strained<S> {
 }
 
 impl<S: Scalar> Strained<S> {
-    pub(super) fn of(element: &ShellElement, x: &Local<S>) -> Self {
-        let mut strain = element.membrane.times(&deformation(element, x));
-        let slopes = element.slopes.times(x);
+    pub(super) fn of(element: &ShellElement, x: &Deformed<S>) -> Self {
+        let mut strain = element.membrane.times(&x.deformation);
+        let slopes = element.slopes.times(&x.all);
         for (p, e) in strain.iter_mut().enumerate().take(QUADRATIC) {
             *e += slopes[p] * slopes[other_slope(p)] * 0.5;
         }
@@ -32,9 +32,9 @@ impl<S: Scalar> Strained<S> {
     }
 
     /// Derivatives of the strains along y.
-    pub(super) fn along(&self, element: &ShellElement, y: &Local<S>) -> [S; STRAINS] {
-        let mut out = element.membrane.times(&deformation(element, y));
-        let slopes = element.slopes.times(y);
+    pub(super) fn along(&self, element: &ShellElement, y: &Deformed<S>) -> [S; STRAINS] {
+        let mut out = element.membrane.times(&y.deformation);
+        let slopes = element.slopes.times(&y.all);
         for (p, e) in out.iter_mut().enumerate().take(QUADRATIC) {
             let q = other_slope(p);
             *e += (slopes[p] * self.slopes[q] + slopes[q] * self.slopes[p]) * 0.5;
@@ -66,9 +66,9 @@ impl<S: Scalar> Strained<S> {
     }
 
     /// ∂/∂u of the derivatives of the strains along r.
-    pub(super) fn turned_gradients(element: &ShellElement, r: &Local<S>) -> Gradients<S> {
+    pub(super) fn turned_gradients(element: &ShellElement, r: &Deformed<S>) -> Gradients<S> {
         let mut out = [[S::zero(); STRAINS]; DISPLACEMENTS];
-        add_gradients(element, &element.slopes.times(r), &mut out);
+        add_gradients(element, &element.slopes.times(&r.all), &mut out);
         out
     }
 }
@@ -125,23 +125,22 @@ pub(super) fn stresses<S: Scalar>(element: &ShellElement, e: &[S; STRAINS]) -> [
 pub(super) fn add_linear<S: Scalar>(
     element: &ShellElement,
     [thin, thick]: [S; 2],
-    x: &Local<S>,
+    x: &Deformed<S>,
     out: &mut Local<S>,
 ) {
-    let x = deformation(element, x);
     let [bending, shear] = &element.linear;
-    bending.add_product(thick, &x, out);
-    shear.add_product(thin, &x, out);
+    bending.add_product(thick, &x.deformation, out);
+    shear.add_product(thin, &x.deformation, out);
 }
 
 /// Twice the linear energies of E h³ = 1 and E h = 1, for two motions.
 pub(super) fn linear_products<S: Scalar>(
     element: &ShellElement,
-    x: &Local<S>,
-    y: &Local<S>,
+    x: &Deformed<S>,
+    y: &Deformed<S>,
 ) -> [S; 2] {
-    let (x, y) = (deformation(element, x), deformation(element, y));
-    element.linear.each_ref().map(|own| own.inner(&x, &y))
+    let (x, y) = (&x.deformation, &y.deformation);
+    element.linear.each_ref().map(|own| own.inner(x, y))
 }
 
 /// E h and E h³ of an element.
@@ -166,14 +165,17 @@ pub(super) fn pull_factors(
 pub(crate) fn energy<S: Scalar>(finite: &FiniteElements<S>, q: &[S]) -> S {
     let mut sum = S::zero();
     for (i, element) in finite.mesh.elements.iter().enumerate() {
-        let ([thin, thick], by) = (factors(finite, i), energies(element, &gather(element, q)));
+        let ([thin, thick], by) = (
+            factors(finite, i),
+            energies(element, &Deformed::of(element, q)),
+        );
         sum += thin * by[0] + thick * by[1];
     }
     sum + parts::energy(finite, q)
 }
 
 /// Energies for E h = 1 and E h³ = 1.
-fn energies<S: Scalar>(element: &ShellElement, x: &Local<S>) -> [S; 2] {
+fn energies<S: Scalar>(element: &ShellElement, x: &Deformed<S>) -> [S; 2] {
     let e = Strained::of(element, x).strain;
     let [bending, shear] = linear_products(element, x, x);
     [
@@ -186,7 +188,7 @@ fn energies<S: Scalar>(element: &ShellElement, x: &Local<S>) -> [S; 2] {
 fn forces<S: Scalar>(finite: &FiniteElements<S>, i: usize, q: &[S]) -> Local<S> {
     let element = &finite.mesh.elements[i];
     let both = factors(finite, i);
-    let x = gather(element, q);
+    let x = Deformed::of(element, q);
     let strained = Strained::of(element, &x);
     let stress = stresses(element, &strained.strain).map(|n| n * both[0]);
     let mut out = [S::zero(); UNKNOWNS];
@@ -215,7 +217,7 @@ pub(crate) fn pull_energy(
     add_forces(finite, q, &mut force);
     add_scaled(by_q, scale, &force);
     for (i, element) in finite.mesh.elements.iter().enumerate() {
-        let by = energies(element, &gather(element, q)).map(|u| u * scale);
+        let by = energies(element, &Deformed::of(element, q)).map(|u| u * scale);
         pull_factors(finite, i, by, cot);
     }
     parts::pull_energy(finite, (q, scale), cot);
@@ -231,7 +233,7 @@ pub(crate) fn pull_forces(
     let (elements, wanted) = (&finite.mesh.elements, by_q.is_some());
     let work = |i: usize| {
         let (element, both) = (&elements[i], factors(finite, i));
-        let (x, y) = (gather(element, q), gather(element, psi));
+        let (x, y) = (Deformed::of(element, q), Deformed::of(element, psi));
         let strained = Strained::of(element, &x);
         let along = strained.along(element, &y);
         let stress = stresses(element, &strained.strain);
@@ -241,7 +243,7 @@ pub(crate) fn pull_forces(
             let by_strain = stresses(element, &along).map(|n| n * both[0]);
             strained.add_transpose(element, &by_strain, &mut force);
             let curved = stress.map(|n| n * both[0]);
-            add_curved(element, &curved, &element.slopes.times(&y), &mut force);
+            add_curved(element, &curved, &element.slopes.times(&y.all), &mut force);
             add_linear(element, both, &y, &mut force);
         }
         ([dot(&along, &stress) + shear, bending], force)
@@ -315,7 +317,7 @@ pub(crate) fn tangent<S: Scalar>(
     let [bending, shear] = &element.linear;
     bending.add_to(thick, n, out);
     shear.add_to(thin, n, out);
-    let strained = Strained::of(element, x);
+    let strained = Strained::of(element, &Deformed::new(element, *x));
     let own = strained.gradients(element);
     let scaled = vectorised(
         #[inline(always)]

@@ -4,7 +4,7 @@
 //! the unknowns, so that an element with stresses keeps both matrices.
 
 use super::each::each;
-use super::element::{gather, motion, scatter};
+use super::element::{Deformed, motion, scatter};
 use super::stiffness::Strained;
 use crate::math::Scalar;
 use crate::model::element_operators::Columns;
@@ -59,11 +59,11 @@ struct Measured<'a, S> {
 
 impl<'a, S: Scalar> Measured<'a, S> {
     fn of(element: &'a ShellElement, q: &[S]) -> Self {
-        let (operator, x) = (operator(element), gather(element, q));
+        let (operator, x) = (operator(element), Deformed::of(element, q));
         let strained = Strained::of(element, &x);
         Self {
             membrane: operator.membrane.times(&strained.strain),
-            curvature: operator.curvature.times(&x),
+            curvature: operator.curvature.times(&x.all),
             operator,
             strained,
         }

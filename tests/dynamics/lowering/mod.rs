@@ -247,8 +247,7 @@ fn every_extreme_scene_moves_the_same_lowered() {
         if has_shells(&scene.model) {
             // Explicit steps of shells are short.
             let duration = format!("/simulation/duration={}", 0.01 * scene.duration);
-            problem = Problem::load(&entry, &[Override::parse(&duration).expect("an override")])
-                .unwrap_or_else(|faults| panic!("{faults}"));
+            problem = load(entry.to_str().expect("a path"), &[&duration]);
             scene = problem.scene::<f64>(&problem.start());
         }
         let chosen = settings(Method::Dop853, Spacing::Tolerance(1e-8));
