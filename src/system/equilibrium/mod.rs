@@ -251,7 +251,9 @@ impl Solver<'_> {
             let part = (LARGEST / size).min(1.0);
             let step: Vec<f64> = change.iter().map(|x| part * x).collect();
             self.layout.advance(&mut x, &step);
-            if size <= CLOSE || size <= STAGNANT && size > 0.3 * before {
+            // The first change has the loads of the velocities that the iteration starts with, and not those of drives.
+            let converged = size <= CLOSE || size <= STAGNANT && size > 0.3 * before;
+            if iteration > 1 && converged {
                 self.known.keep(&self.numbers, &x);
                 return Ok(x);
             }
