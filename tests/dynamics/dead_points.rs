@@ -22,7 +22,7 @@ fn hinge(between: [&str; 2], at: Value) -> Value {
 fn slider_crank(angle: f64, slide: Value) -> Value {
     let (sin, cos) = angle.sin_cos();
     let (x, y) = (0.3 * cos, 0.3 * sin);
-    let rod = -(y / 1.0).asin();
+    let rod = -y.asin();
     let end = x + rod.cos();
     json!({
         "version": 1, "name": "slider crank", "gravity": [0, 0, 0],
