@@ -8,6 +8,7 @@ pub(crate) mod certificate;
 pub(crate) mod chaos;
 pub(crate) mod check;
 mod connectors;
+mod driven_start;
 pub(crate) mod elastic_figures;
 pub(crate) mod error;
 pub(crate) mod evaluate;

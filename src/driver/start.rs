@@ -1,6 +1,7 @@
 //! Changes of the start that a file gives: bodies are moved to close the joints, velocities are
 //! projected onto the joints; and notes on joints without degrees of freedom.
 
+use super::driven_start::{TOLD, hit, short, unsteady};
 use crate::math::{Vec3, rotation};
 use crate::model::{Model, RigidBody};
 use crate::problem::Problem;
@@ -10,8 +11,6 @@ use crate::system::kkt::SaddlePoint;
 use crate::system::placement::{guess, length_scale};
 use crate::system::{BodyMotion, InMotion, Numbering, joints, redundancy};
 
-/// Changes of a position or velocity above this, relative to the largest one, are reported.
-const TOLD: f64 = 1e-6;
 /// Part of the speeds of a scene that a told strain energy gives to the mass of its body.
 const SLOW: f64 = 1e-3;
 /// Largest number of bodies that are reported.
@@ -26,6 +25,8 @@ pub(crate) fn notes(problem: &Problem, x: &[f64]) -> Vec<String> {
         Some(placed) => {
             let mut notes = of_placement(&placed, x, " before equilibrium is sought");
             notes.extend(unstable(problem, x));
+            let model = placed.unlowered_scene(x).model;
+            tell(&mut notes, unsteady(problem, &model, x));
             notes
         }
         None => of_placement(problem, x, ""),
@@ -78,6 +79,7 @@ fn of_placement(problem: &Problem, x: &[f64], when: &str) -> Vec<String> {
     tell(&mut notes, deformed(&model, &numbering, &start, when));
     let changed = changed(&model, &numbering, &start);
     tell(&mut notes, changed);
+    notes.extend(hit(&model, &numbering, &start));
     notes
 }
 
@@ -270,12 +272,4 @@ fn changed(model: &Model<f64>, numbering: &Numbering, start: &InitialState<f64>)
         })
     };
     all.enumerate().filter_map(one).collect()
-}
-
-fn short(x: f64) -> String {
-    match x {
-        ..1e-12 => "0".into(),
-        ..1e-3 => format!("{x:.1e}"),
-        _ => format!("{x:.4}"),
-    }
 }

@@ -393,6 +393,7 @@ mod tests {
             relative_to: None,
             axis: Vec3::z(),
             placed: None,
+            first: None,
         };
         for open in [GateSide::Above, GateSide::Below] {
             let gate = Gate {

@@ -190,7 +190,8 @@ pub(crate) enum Instant<S> {
     Slide(usize),
     /// Length, force or torque of a spring \[m, N or N m\].
     Spring(Spring),
-    /// Rotation of a body about an axis, continuous in time and in (−2π, 2π] at t = 0 \[rad\].
+    /// Rotation of a body about an axis, continuous in time \[rad\]. At t = 0 it has the turns of a joint's start, or is in
+    /// (−2π, 2π].
     Rotation(Rotation<S>),
     /// Range of a projectile that is released at this instant \[m\], times the gate if there is
     /// one: R = x + (v_x/g)(v_y + √s0), s0 = v_y² + 2 g (y − y_g). It is smoothed if the ground is

@@ -8,7 +8,8 @@
 //! θ = 2 atan2(eᵀn, r0) + 2π k,     n fixed in B
 //! ```
 //!
-//! The angle of a joint is θ with the joint's axis n and c from the placement.
+//! The angle of a joint is θ with the joint's axis n and c from the placement. At t = 0 it has the whole turns of the
+//! joint's start or drive.
 
 use crate::integrate::Trajectory;
 use crate::math::rotation::{self, Quat, compose, conjugate};
@@ -28,6 +29,9 @@ pub(crate) struct Rotation<S> {
     pub axis: Vec3<S>,
     /// c, if the angle counts from the placement; `None` if it counts from parallel axes.
     pub placed: Option<Quat<S>>,
+    /// The angle at t = 0 that the start of a joint or its drive gives, up to less than half a turn \[rad\]; `None` if it
+    /// is in (−2π, 2π].
+    pub first: Option<f64>,
 }
 
 /// Derivatives of an angle in the tangent positions of both bodies and in its parameters.
@@ -38,7 +42,7 @@ struct ByRotation {
     placed: Quat<f64>,
 }
 
-parameters!(struct Rotation { body, relative_to; axis, placed });
+parameters!(struct Rotation { body, relative_to, first; axis, placed });
 
 impl<S: Scalar> Rotation<S> {
     /// r at the positions `q`.
@@ -54,6 +58,11 @@ impl<S: Scalar> Rotation<S> {
     /// θ at the positions `q`, without whole turns \[rad\].
     pub(crate) fn angle(&self, numbering: &Numbering, q: &[S]) -> S {
         rotation::twist(&self.turned(numbering, q), &self.axis)
+    }
+
+    /// Whole turns that θ has at t = 0, where it is `twist` without them \[rad\].
+    pub(crate) fn first_turns(&self, twist: f64) -> f64 {
+        self.first.map_or(0.0, |first| whole_turns(first - twist))
     }
 
     /// θ̇ of the state (q, v) \[rad/s\].
@@ -161,6 +170,11 @@ fn orientation<S: Scalar>(numbering: &Numbering, q: &[S], body: usize) -> Quat<S
     positions_of(&q[numbering.position(body)..]).1
 }
 
+/// The multiple of 2π nearest to an angle.
+fn whole_turns(angle: f64) -> f64 {
+    TAU * (angle / TAU).round()
+}
+
 /// Multiples of 2π that make a rotation continuous over a run; one per sample.
 ///
 /// If the rates at two samples differ by less than half a turn over the time between them, the
@@ -176,14 +190,17 @@ pub(crate) fn turns<S: Scalar>(
         let twist = watched.angle(&run.numbering, run.q(k)).re();
         let rate = watched.rate(&run.numbering, (run.q(k), run.v(k)));
         let time = run.time(k).re();
-        let turns = before.map_or(0.0, |[angle, rate_before, time_before]| {
-            let h = time - time_before;
-            let expected = match (rate - rate_before).abs() * h < PI {
-                true => angle + 0.5 * (rate + rate_before) * h,
-                false => angle,
-            };
-            TAU * ((expected - twist) / TAU).round()
-        });
+        let turns = match before {
+            None => watched.first_turns(twist),
+            Some([angle, rate_before, time_before]) => {
+                let h = time - time_before;
+                let expected = match (rate - rate_before).abs() * h < PI {
+                    true => angle + 0.5 * (rate + rate_before) * h,
+                    false => angle,
+                };
+                whole_turns(expected - twist)
+            }
+        };
         before = Some([twist + turns, rate, time]);
         turns
     });

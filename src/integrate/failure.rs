@@ -1,5 +1,8 @@
 //! Failures of a simulation.
 
+use crate::math::{Parameters, Scalar};
+use crate::model::Model;
+use crate::system::dead_points;
 use crate::system::failure::AssemblyFailure;
 
 /// The reason why a simulation did not reach its end.
@@ -53,7 +56,7 @@ pub(crate) enum IntegrationFailure {
     },
     /// A step ends too close to a singular position for its motion to be known to the accuracy.
     #[error(
-        "the mechanism is at a singular position at t = {time:.6e} s (step {step}), where the joints do \
+        "the mechanism is at a singular position at t = {time:.6e} s (step {step}){drive}, where the joints do \
          not determine its motion: a step that ends there is not accurate"
     )]
     SingularPosition {
@@ -61,6 +64,8 @@ pub(crate) enum IntegrationFailure {
         time: f64,
         /// Step number, from 1.
         step: usize,
+        /// The drive that is at a dead point there, as text; empty if none is.
+        drive: String,
     },
     /// The motion inside a step leaves the joints.
     #[error(
@@ -287,6 +292,20 @@ pub(crate) enum IntegrationFailure {
         /// The duration \[s\].
         duration: f64,
     },
+}
+
+impl IntegrationFailure {
+    /// The same failure with the drive at a dead point, if it is a singular position of one; q are positions near it.
+    pub(crate) fn with_drive<S: Scalar>(mut self, model: &Model<S>, q: &[S]) -> Self {
+        if let Self::SingularPosition { time, drive, .. } = &mut self {
+            let model = model.map(&mut |x| x.re());
+            let q: Vec<f64> = q.iter().map(|x| x.re()).collect();
+            if let Some(joint) = dead_points::driven_to_dead_point(&model, &q, *time) {
+                *drive = format!(", a dead point of the drive of joint \"{joint}\"");
+            }
+        }
+        self
+    }
 }
 
 /// The size of a residual in a message.

@@ -37,6 +37,16 @@ impl Seen {
                 parts.join(a, b);
             }
         }
+        for load in &model.loads {
+            if let LoadKind::TorsionSpring {
+                joint,
+                counter: Some(counter),
+                ..
+            } = load.kind
+            {
+                parts.join(model.joints[joint].body_a, counter);
+            }
+        }
         let mut functions = asked.to_vec();
         functions.sort_unstable();
         functions.dedup();
@@ -197,8 +207,11 @@ fn leave_out<S: Scalar>(model: &mut Model<S>, number: &[Option<usize>]) -> [Vec<
                 new(body_a);
                 body_b.iter_mut().for_each(new);
             }
-            LoadKind::TorsionSpring { joint, .. }
-            | LoadKind::Damping { joint, .. }
+            LoadKind::TorsionSpring { joint, counter, .. } => {
+                new_joint(joint);
+                counter.iter_mut().for_each(new);
+            }
+            LoadKind::Damping { joint, .. }
             | LoadKind::BallDamping { joint, .. }
             | LoadKind::Friction { joint, .. } => new_joint(joint),
         }

@@ -59,7 +59,8 @@ pub(crate) enum LoadKind<S> {
         /// m(t) \[N m\].
         magnitude: TimeFunction<S>,
     },
-    /// A spring with a damper between points of two bodies. The points must stay apart.
+    /// A spring with a damper between points of two bodies. The points must stay apart, unless l0 and c are zero: then
+    /// F = −(k + k3 l²) d is smooth where they meet.
     Spring {
         /// Body A.
         body_a: usize,
@@ -78,11 +79,13 @@ pub(crate) enum LoadKind<S> {
         /// Damping c \[N s/m\].
         damping: S,
     },
-    /// A spring with a damper about the axis of a joint. Its angle x = φ − φ0 is taken in (−π, π].
-    /// So it jumps by a turn in positions that are half a turn from rest, and is smooth elsewhere.
+    /// A spring with a damper about the axis of a joint. Its angle φ has all turns since the start.
     TorsionSpring {
         /// The joint.
         joint: usize,
+        /// The body whose first coordinate has the turns of φ (see `system::turns`). Without it x = φ − φ0 is taken in
+        /// (−π, π] and jumps by a turn half a turn from rest.
+        counter: Option<usize>,
         /// Angle φ0 at zero torque \[rad\].
         rest_angle: S,
         /// Stiffness k \[N m/rad\].
@@ -128,7 +131,7 @@ parameters!(enum LoadKind {
     Force { body, axes; point, direction, magnitude },
     Torque { body, axes; direction, magnitude },
     Spring { body_a, body_b; point_a, point_b, rest_length, stiffness, cubic, damping },
-    TorsionSpring { joint; rest_angle, stiffness, damping },
+    TorsionSpring { joint, counter; rest_angle, stiffness, damping },
     Damping { joint, dof; coefficient },
     BallDamping { joint; coefficient },
     Friction { joint, dof; size, width },

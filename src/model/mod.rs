@@ -37,7 +37,7 @@ use crate::math::{Scalar, Vec3, parameters, rotation};
 pub(crate) struct Model<S> {
     /// Gravitational acceleration in ground axes \[m/s²\].
     pub gravity: Vec3<S>,
-    /// Bodies in the order of the problem file, then those without mass that flexible bodies need.
+    /// Bodies in the order of the problem file, then those without mass that flexible bodies and torsion springs need.
     pub bodies: Vec<RigidBody<S>>,
     /// Joints in the order of the problem file, then the attachments of flexible bodies.
     pub joints: Vec<Joint<S>>,
@@ -76,10 +76,29 @@ impl<S: Scalar> Model<S> {
         !driven && self.loads.iter().all(conserves) && self.flexible.iter().all(undamped)
     }
 
-    /// Whether a body carries elastic coordinates.
+    /// Whether a body carries elastic coordinates or counts turns.
     pub(crate) fn is_carrier(&self, body: usize) -> bool {
         let mut all = self.flexible.iter();
-        all.any(|flexible| flexible.carriers().contains(&body))
+        all.any(|flexible| flexible.carriers().contains(&body)) || self.is_counter(body)
+    }
+
+    /// Whether a body counts the turns of a torsion spring.
+    pub(crate) fn is_counter(&self, body: usize) -> bool {
+        let counts = |load: &Load<S>| matches!(load.kind, LoadKind::TorsionSpring { counter, .. } if counter == Some(body));
+        self.loads.iter().any(counts)
+    }
+
+    /// Gives a torsion spring a body that counts the turns of its joint, whose angle starts so.
+    pub(crate) fn count_turns(&mut self, load: usize, angle: f64) {
+        let body = self.bodies.len();
+        let Load { name, kind } = &mut self.loads[load];
+        if let LoadKind::TorsionSpring { counter, .. } = kind {
+            *counter = Some(body);
+            let mut own = RigidBody::massless(format!("{name}, turns"));
+            own.mobility = Mobility::fixed();
+            own.position.x = S::from(angle);
+            self.bodies.push(own);
+        }
     }
 
     /// Whether a body is the frame, a carrier or an interface of a flexible body.
@@ -94,7 +113,7 @@ impl<S: Scalar> Model<S> {
         self.joints.iter().any(of)
     }
 
-    /// Whether a body is not in the problem file: it carries elastic coordinates or is a point of a
+    /// Whether a body is not in the problem file: it carries elastic coordinates, counts turns or is a point of a
     /// flexible body.
     pub(crate) fn is_internal(&self, body: usize) -> bool {
         self.is_carrier(body) || self.is_interface(body)

@@ -11,7 +11,7 @@ use crate::model::{Joint, JointKind, RigidBody};
 use crate::system::failure::AssemblyFailure;
 use crate::system::kkt::SaddlePoint;
 use crate::system::placement::length_scale;
-use crate::system::{Numbering, initial, loads, redundancy};
+use crate::system::{Numbering, dead_points, initial, loads, redundancy};
 
 /// Memory of an optimisation per pair of variables \[bytes\]: about forty matrices.
 const OF_PAIR: usize = 350;
@@ -44,12 +44,16 @@ pub(super) fn collapsed(problem: &Problem) -> Option<Finding> {
             joint.kind == JointKind::Rod && joint.frame_a.length <= shortest
         })
         .map(|joint| join(&join(&join("/joints", &joint.name), "rod"), "at"));
+    let apart = "ends that are apart, as a force acts along the line through them";
+    let meet = format!(
+        "{apart}; only a spring without rest length and damping may start with its ends at one place"
+    );
     let spring = || {
         let spring = loads::without_length(&model)?;
-        Some(join(&join(&join("/loads", spring), "spring"), "at"))
+        Some((join(&join(&join("/loads", spring), "spring"), "at"), meet))
     };
-    let pointer = rod.or_else(spring)?;
-    let expected = "ends that are apart, as a force acts along the line through them";
+    let rod = rod.map(|pointer| (pointer, apart.to_owned()));
+    let (pointer, expected) = rod.or_else(spring)?;
     Some(Finding::new(pointer, "ends at the same place", expected))
 }
 
@@ -103,13 +107,18 @@ pub(super) fn driven_twice(problem: &Problem) -> Option<Finding> {
         .iter()
         .map(|(name, drive)| (name, drive.joint.as_str()));
     let (name, joint) = named.rfind(superfluous)?;
+    let pointer = join(&join("/drives", name), "joint");
+    if dead_points::is_at_dead_point(&model, joint) {
+        let found = format!(
+            "a drive of joint \"{joint}\" at a dead point, where this joint cannot move at first"
+        );
+        let expected = "a position in which the drive determines the motion";
+        let hint = "start away from the dead point, or drive another joint of the linkage";
+        return Some(Finding::new(pointer, found, expected).hint(Some(hint.to_owned())));
+    }
     let found = format!("the joint \"{joint}\"");
     let expected = "a joint whose motion the other joints and drives leave free";
-    Some(Finding::new(
-        join(&join("/drives", name), "joint"),
-        found,
-        expected,
-    ))
+    Some(Finding::new(pointer, found, expected))
 }
 
 /// The fault of joints that cannot start as given at the design of the file.

@@ -1,6 +1,7 @@
 //! The functions of a scene from those of a problem file.
 
 use super::flexible::{FlexibleBodies, Sections, station, stations};
+use super::joints::starting_angle;
 use super::placement::{Assembly, GROUND};
 use super::quantity::vector;
 use super::schema::Document;
@@ -286,11 +287,12 @@ impl<S: Scalar> FunctionBuilder<'_, S> {
                     &seen_from.orientation,
                 )),
             },
+            first: None,
         }
     }
 
     /// The angle of a joint, as in drives and torsion springs.
-    fn joint_angle(&self, name: &str) -> Rotation<S> {
+    pub(super) fn joint_angle(&self, name: &str) -> Rotation<S> {
         let joint = &self.document.joints[name];
         let [first, second] = joint.between().each_ref().map(|body| Some(body.as_str()));
         let bodies = match first {
@@ -305,6 +307,7 @@ impl<S: Scalar> FunctionBuilder<'_, S> {
         let (own, other) = self.ends[index.expect("joints are checked")];
         rotation.body = own;
         rotation.relative_to = other;
+        rotation.first = starting_angle(self.document, self.assembly, name);
         rotation
     }
 

@@ -90,6 +90,7 @@ fn kind<S: Scalar>(
         }
         WrittenLoad::TorsionSpring(spring) => LoadKind::TorsionSpring {
             joint: joint(document, &spring.joint).0,
+            counter: None,
             rest_angle: get(&spring.rest_angle),
             stiffness: get(&spring.stiffness),
             damping: get(&spring.damping),

@@ -332,12 +332,13 @@ impl Problem {
         lowering.is_none_or(|lowering| lowering.apply(scene))
     }
 
-    /// The problem whose scene starts as its bodies are placed; `None` if this one does.
+    /// The problem whose scene starts as its bodies are placed before equilibrium is sought; `None` if this one does not
+    /// start in equilibrium.
     pub(crate) fn without_equilibrium(&self) -> Option<Self> {
         let settles = self.written.start == schema::flexible::Start::Equilibrium;
         settles.then(|| {
             let mut other = self.clone();
-            other.written.start = schema::flexible::Start::Given;
+            other.written.start = schema::flexible::Start::Placed;
             other
         })
     }
@@ -349,6 +350,16 @@ impl Problem {
         let model = scene::scene(&placed.written, &placed.order, x).model;
         let found = equilibrium::growth(&model, &self.written.known_starts);
         found.ok().flatten()
+    }
+
+    /// By flexible body: name, and the vibration that the start in equilibrium leaves in it as a part of its deformation
+    /// (see [`equilibrium::left_out`]); `None` if there is no such start.
+    pub(crate) fn unsteady_at_equilibrium(&self, x: &[f64]) -> Option<Vec<(String, f64)>> {
+        let placed = self.without_equilibrium()?;
+        let model = scene::scene(&placed.written, &placed.order, x).model;
+        let parts = equilibrium::left_out(&model, &self.written.known_starts).ok()?;
+        let names = model.flexible.iter().map(|body| body.name.clone());
+        Some(names.zip(parts).collect())
     }
 
     /// The scene at the design `x` without reductions. Redundant rows are left out, and the parts

@@ -7,6 +7,7 @@ use super::placement::Assembly;
 use super::quantity::{Vector, vector};
 use super::schema::Document;
 use super::schema::flexible::Start;
+use super::schema::loads::Load;
 use super::schema::mechanics::{Body, Shape};
 use super::start_rates;
 use super::starts::Starts;
@@ -15,8 +16,10 @@ use crate::math::rotation::matrix;
 use crate::math::scalar::lift3;
 use crate::math::{Scalar, Vec3};
 use crate::model::{Mobility, Model, RigidBody};
+use crate::system::Numbering;
 use crate::system::equilibrium::settle;
 use crate::system::failure::AssemblyFailure;
+use crate::system::placement::guess;
 
 /// Default gravity \[m/s²\].
 pub(crate) const GRAVITY: [f64; 3] = [0.0, -9.81, 0.0];
@@ -39,9 +42,6 @@ pub(crate) fn scene<S: Scalar>(document: &Document, order: &[usize], x: &[S]) ->
     let numbers = FlexibleBodies::weigh(document, &mut model, x);
     let mut unstarted = start(document, &assembly, &mut model, x).err();
     let mut flexible = FlexibleBodies::add(document, &assembly, &mut model, numbers, x);
-    if document.start == Start::Equilibrium && unstarted.is_none() {
-        unstarted = settle(&mut model, &document.known_starts).err();
-    }
     let builder = FunctionBuilder {
         document,
         assembly: &assembly,
@@ -56,6 +56,10 @@ pub(crate) fn scene<S: Scalar>(document: &Document, order: &[usize], x: &[S]) ->
             .collect(),
         x,
     };
+    count_turns(document, &builder, &mut model);
+    if document.start == Start::Equilibrium && unstarted.is_none() {
+        unstarted = settle(&mut model, &document.known_starts).err();
+    }
     let mut functions: Vec<Function<S>> = document
         .functions
         .values()
@@ -74,6 +78,19 @@ pub(crate) fn scene<S: Scalar>(document: &Document, order: &[usize], x: &[S]) ->
         until,
         functions,
         unstarted,
+    }
+}
+
+/// Gives torsion springs counters of their turns, which start as the angles of their joints do.
+fn count_turns<S: Scalar>(document: &Document, builder: &FunctionBuilder<S>, model: &mut Model<S>) {
+    let numbering = Numbering::new(model);
+    let (q, _) = guess(model);
+    for (k, load) in document.loads.values().enumerate() {
+        if let Load::TorsionSpring(spring) = load {
+            let rotation = builder.joint_angle(&spring.joint);
+            let twist = rotation.angle(&numbering, &q).re();
+            model.count_turns(k, twist + rotation.first_turns(twist));
+        }
     }
 }
 
@@ -164,10 +181,8 @@ fn written_velocity<S: Scalar>(
 /// By body: its own velocities, if the file gives them and starts of joints may replace them; see
 /// [`written_velocity`].
 pub(crate) fn own_velocities(document: &Document, x: &[f64]) -> Vec<Option<[Vec3<f64>; 2]>> {
-    let started = document
-        .joints
-        .values()
-        .any(|joint| joint.start().is_some());
+    let follows = document.start != Start::Given && !document.drives.is_empty();
+    let started = follows || (document.joints.values()).any(|joint| joint.start().is_some());
     let own = |body: &Body| {
         body.velocity.as_ref().filter(|_| started)?;
         Some(written_velocity(document, body, &Vec3::zeros(), x))

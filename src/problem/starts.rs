@@ -17,6 +17,7 @@ use super::hinge::{Hinge, Move, hinge, place};
 use super::placement::Assembly;
 use super::quantity::Quantity;
 use super::schema::Document;
+use super::schema::flexible::Start;
 use super::schema::joints::{Ends, Joint as WrittenJoint, JointPlace};
 use super::schema::mechanics::Shape;
 use crate::math::rotation::{compose, conjugate, from_axis_angle, matrix};
@@ -27,8 +28,13 @@ use crate::system::failure::AssemblyFailure;
 use crate::system::nearest::nearest;
 use crate::system::redundancy;
 
-/// Number of steps in which the joints of loops go to their starts.
+/// Least and largest number of steps in which the joints of loops go to their starts, and the largest turn in one \[rad\].
 const STEPS: usize = 16;
+const MOST_STEPS: f64 = 4096.0;
+const MOST_TURN: f64 = 1.25;
+/// Drives that start beyond this angle \[rad\] turn their bodies as a start of the joint does. Nearer ones are closed by
+/// the assembly.
+const QUARTER: f64 = std::f64::consts::FRAC_PI_2;
 
 /// Both degrees of freedom of a joint.
 pub(super) const DOFS: [DegreeOfFreedom; 2] =
@@ -72,11 +78,11 @@ impl<S: Scalar> Starts<S> {
             for dof in DOFS {
                 let values = written.start().and_then(|start| start.of(dof));
                 let get = |value: Option<Quantity>| value.map(|value| assembly.quantity(&value));
-                given.extend(values.map(|values| Given {
-                    joint,
-                    dof,
-                    values: values.map(get),
-                }));
+                let values = match values {
+                    Some(values) => Some(values.map(get)),
+                    None => driven(document, &model.joints[joint], dof),
+                };
+                given.extend(values.map(|values| Given { joint, dof, values }));
             }
         }
         if given.is_empty() {
@@ -241,14 +247,13 @@ impl<S: Scalar> Starts<S> {
         self.check_free(&part, &block.joints, Asked::Place)?;
         let own: Vec<usize> = (0..block.bodies.len()).collect();
         let driven = part.joints.clone();
-        for step in 1..=STEPS {
+        let turns = self.given(&block.joints, Asked::Place);
+        let turns = turns.filter(|(_, dof, _)| *dof == DegreeOfFreedom::Rotation);
+        let most = turns.fold(0.0_f64, |most, (.., angle)| most.max(angle.re().abs()));
+        let steps = (most / MOST_TURN).ceil().clamp(STEPS as f64, MOST_STEPS);
+        for step in 1..=steps as usize {
             part.joints.clone_from(&driven);
-            self.drive(
-                &mut part,
-                &block.joints,
-                Asked::Place,
-                step as f64 / STEPS as f64,
-            );
+            self.drive(&mut part, &block.joints, Asked::Place, step as f64 / steps);
             let q = nearest(&part)?.q;
             put(&mut part, &own, &q);
         }
@@ -305,17 +310,20 @@ impl<S: Scalar> Starts<S> {
     }
 
     /// Adds drives that prescribe the starts of a part's joints: a fraction of their positions, or
-    /// their rates at the present position.
+    /// their rates at the present position. A drive of the file is there already; a fraction takes its place.
     pub(super) fn drive(&self, part: &mut Model<S>, joints: &[usize], asked: Asked, fraction: f64) {
         for (joint, dof, value) in self.given(joints, asked) {
             let coefficients = match asked {
                 Asked::Place => vec![value * fraction],
                 Asked::Rate => vec![place(part, joint, dof), value],
             };
-            part.joints[joint].drives.push(Drive {
-                dof,
-                course: TimeFunction::Polynomial(coefficients),
-            });
+            let course = TimeFunction::Polynomial(coefficients);
+            let drives = &mut part.joints[joint].drives;
+            match (drives.iter_mut().find(|drive| drive.dof == dof), asked) {
+                (None, _) => drives.push(Drive { dof, course }),
+                (Some(own), Asked::Place) => own.course = course,
+                (Some(_), Asked::Rate) => {}
+            }
         }
     }
 
@@ -337,6 +345,10 @@ impl<S: Scalar> Starts<S> {
         let more =
             |model: &Model<f64>| redundancy::redundant_rows(model).is_some_and(|n| n > before);
         let mut held = |(joint, dof): (usize, DegreeOfFreedom)| {
+            let drives = &model.joints[joint].drives;
+            if drives.iter().any(|drive| drive.dof == dof) {
+                return None;
+            }
             let at = place(&model, joint, dof);
             model.joints[joint].drives.push(Drive {
                 dof,
@@ -353,6 +365,20 @@ impl<S: Scalar> Starts<S> {
             None => Ok(()),
         }
     }
+}
+
+/// The start that a drive gives a joint: an angle beyond a quarter turn, which the assembly cannot reach, and the rate
+/// with which the bodies of a start in equilibrium move.
+fn driven<S: Scalar>(
+    document: &Document,
+    joint: &Joint<S>,
+    dof: DegreeOfFreedom,
+) -> Option<[Option<S>; 2]> {
+    let drive = joint.drives.iter().find(|drive| drive.dof == dof)?;
+    let [place, rate, ..] = drive.course.derivatives(S::zero());
+    let far = dof == DegreeOfFreedom::Rotation && place.re().abs() > QUARTER;
+    let follows = document.start != Start::Given;
+    (far || follows).then_some([far.then_some(place), follows.then_some(rate)])
 }
 
 /// Whether a joint is closed in every placement of its bodies.

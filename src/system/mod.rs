@@ -12,6 +12,7 @@ pub(crate) mod assembly;
 pub(crate) mod attachment;
 pub(crate) mod bodies;
 pub(crate) mod constraint;
+pub(crate) mod dead_points;
 mod elastic;
 pub(crate) mod emit_bodies;
 pub(crate) mod equilibrium;
@@ -44,6 +45,7 @@ pub(crate) mod rows;
 pub(crate) mod side;
 mod strains;
 pub(crate) mod tree;
+pub(crate) mod turns;
 
 pub(crate) use bodies::BodyMotion;
 pub(crate) use in_motion::InMotion;

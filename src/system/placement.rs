@@ -23,7 +23,9 @@ pub(crate) fn length_scale<S: Scalar>(model: &Model<S>) -> f64 {
         let (a, b) = (&j.frame_a, &j.frame_b);
         [size(&a.point), size(&b.point), a.length.re().abs()]
     });
-    let bodies = model.bodies.iter().map(|b| size(&b.position));
+    let bodies = model.bodies.iter().enumerate();
+    let bodies = bodies.filter(|(i, _)| !model.is_counter(*i));
+    let bodies = bodies.map(|(_, b)| size(&b.position));
     let largest = joints.chain(bodies).fold(0.0, f64::max);
     if largest > 0.0 { largest } else { 1.0 }
 }

@@ -159,7 +159,15 @@ impl<S: Scalar> PlanarJoints<S> {
     pub(crate) fn of(model: &Model<S>) -> Option<Self> {
         let mut plane = None;
         let mut planes = Vec::with_capacity(model.bodies.len() + 1);
-        for body in &model.bodies {
+        for (i, body) in model.bodies.iter().enumerate() {
+            // No joint holds it.
+            if model.is_counter(i) {
+                planes.push(BodyPlane {
+                    along: [Vec3::x(), Vec3::y()],
+                    normal: Vec3::z(),
+                });
+                continue;
+            }
             let [[t1, t2, _], [normal, first, second]] = body.mobility.plane()?;
             if *plane.get_or_insert([t1, t2]) != [t1, t2] {
                 return None;

@@ -36,7 +36,7 @@ const DAMPED: f64 = 1e-6;
 const ITERATIONS: usize = 50;
 /// Distances from the placement that are tried for the nearby position, in units of the length
 /// scale and in radians.
-const BESIDE: [f64; 3] = [0.03, -0.02, 0.005];
+pub(super) const BESIDE: [f64; 3] = [0.03, -0.02, 0.005];
 
 /// A joint with redundant rows.
 #[derive(Clone, Debug, PartialEq, Eq)]
@@ -158,20 +158,23 @@ fn independent_rows(model: &Model<f64>, joints: &[usize]) -> Option<Vec<bool>> {
 }
 
 /// The rows of some joints of a model.
-struct Rows<'a> {
+pub(super) struct Rows<'a> {
     model: &'a Model<f64>,
-    numbering: Numbering,
+    pub(super) numbering: Numbering,
     joints: &'a [usize],
     length: f64,
+    /// Time of the drives \[s\].
+    pub(super) time: f64,
 }
 
 impl<'a> Rows<'a> {
-    fn new(model: &'a Model<f64>, joints: &'a [usize]) -> Self {
+    pub(super) fn new(model: &'a Model<f64>, joints: &'a [usize]) -> Self {
         Self {
             model,
             numbering: Numbering::new(model),
             joints,
             length: length_scale(model),
+            time: 0.0,
         }
     }
 
@@ -183,17 +186,17 @@ impl<'a> Rows<'a> {
     }
 
     fn at<'b>(&'b self, motions: &'b [BodyMotion<f64>]) -> InMotion<'b, f64> {
-        InMotion::new(self.model, &self.numbering, motions, 0.0)
+        InMotion::new(self.model, &self.numbering, motions, self.time)
     }
 
     /// Constraint rows by number, in the order of the joints.
-    fn numbers(&self) -> impl Iterator<Item = usize> + '_ {
+    pub(super) fn numbers(&self) -> impl Iterator<Item = usize> + '_ {
         self.joints.iter().flat_map(|&j| self.numbering.rows(j))
     }
 
     /// Unit rows of G as columns, with angles as arcs at the length scale, and the factors that
     /// normalise them.
-    fn gradients(&self, q: &[f64]) -> (DMatrix<f64>, Vec<f64>) {
+    pub(super) fn gradients(&self, q: &[f64]) -> (DMatrix<f64>, Vec<f64>) {
         let motions = self.motions(q);
         let mut all = Vec::new();
         joints::gradients(&self.at(&motions), &mut all);
@@ -236,7 +239,7 @@ impl<'a> Rows<'a> {
     }
 
     /// The closed position that Newton's method reaches from `q` by small steps.
-    fn close(&self, mut q: Vec<f64>) -> Option<Vec<f64>> {
+    pub(super) fn close(&self, mut q: Vec<f64>) -> Option<Vec<f64>> {
         let mut increment = vec![0.0; q.len()];
         bodies::normalise(&self.numbering, &mut q, &mut increment);
         let mut values = vec![0.0; self.numbering.constraints()];
@@ -274,7 +277,7 @@ impl<'a> Rows<'a> {
 
     /// A closed position at the given distance from `q`, along a motion that the joints allow;
     /// `None` if they allow none.
-    fn beside(&self, q: &[f64], distance: f64) -> Option<Vec<f64>> {
+    pub(super) fn beside(&self, q: &[f64], distance: f64) -> Option<Vec<f64>> {
         let (g, _) = self.gradients(q);
         // A direction without symmetry.
         let count = self.numbering.velocities();
@@ -295,7 +298,7 @@ impl<'a> Rows<'a> {
     }
 
     /// Which rows to keep at q, so that they are independent and the others follow.
-    fn independent(&self, q: &[f64]) -> Vec<bool> {
+    pub(super) fn independent(&self, q: &[f64]) -> Vec<bool> {
         let (mut g, _) = self.gradients(q);
         let mut kept = vec![false; g.ncols()];
         loop {

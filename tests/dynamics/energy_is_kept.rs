@@ -42,6 +42,7 @@ fn scene(seed: u64, unit: f64) -> (Model<f64>, f64) {
             0 => continue,
             1 if turns => LoadKind::TorsionSpring {
                 joint: index,
+                counter: None,
                 rest_angle: 0.3 * numbers.next(),
                 stiffness,
                 damping: 0.0,

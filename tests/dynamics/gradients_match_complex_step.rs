@@ -25,6 +25,7 @@ pub(super) fn functions(body: usize, gate_body: usize) -> Vec<Function<f64>> {
         relative_to,
         axis,
         placed,
+        first: None,
     };
     let gate = Gate {
         rotation: turned(gate_body, None, Vec3::z(), None),

@@ -82,6 +82,7 @@ fn kinds(body_b: Option<usize>, numbers: &mut Numbers) -> Vec<(JointKind, LoadKi
         // A rest angle on the far side, so that the difference is wrapped.
         let torsion = LoadKind::TorsionSpring {
             joint: 0,
+            counter: None,
             rest_angle: 2.5,
             stiffness: 1.3,
             damping,

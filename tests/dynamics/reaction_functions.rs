@@ -123,6 +123,7 @@ fn pair(kind: JointKind, seed: u64, driven: bool) -> Model<f64> {
             name: "coil".into(),
             kind: LoadKind::TorsionSpring {
                 joint: 0,
+                counter: None,
                 rest_angle: 0.4,
                 stiffness: 3.0,
                 damping: 0.2,

@@ -22,6 +22,7 @@ mod modal_scenes;
 mod problems_check;
 mod readme;
 mod reduced_shells;
+mod relative_equilibrium;
 mod report_plots;
 mod report_records;
 mod second_order;

@@ -167,7 +167,8 @@ pub(crate) fn march<S: SolveScalar>(
             Ok(steady) => steady.unwrap_or(f64::INFINITY),
             Err(failure) if gives_up => {
                 let time = duration.re() * end;
-                return Err(failed(failure, (model, numbering), (number, time)));
+                let failure = failed(failure, (model, numbering), (number, time));
+                return Err(failure.with_drive(model, &from.q));
             }
             Err(_) => {
                 run.counts.rejected += 1;
@@ -352,7 +353,11 @@ pub(crate) fn failed<S: SolveScalar>(
             place: describe(model, numbering, singular),
         },
         StepFailure::Projection => IntegrationFailure::Projection { time, step },
-        StepFailure::Close(_) => IntegrationFailure::SingularPosition { time, step },
+        StepFailure::Close(_) => IntegrationFailure::SingularPosition {
+            time,
+            step,
+            drive: String::new(),
+        },
         StepFailure::Open => IntegrationFailure::Opened { time, step },
         StepFailure::Inaccurate(error) => IntegrationFailure::Unstable { time, step, error },
         StepFailure::NotFinite => IntegrationFailure::NotFinite {

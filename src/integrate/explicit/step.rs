@@ -7,7 +7,7 @@ use crate::math::{Vec3, rotation};
 use crate::model::Model;
 use crate::system::accelerations::Accelerations;
 use crate::system::bodies::{self, add6, positions_of};
-use crate::system::{Numbering, flexible, placement};
+use crate::system::{Numbering, flexible, placement, turns};
 
 /// Largest number of iterations of the position projection.
 const ITERATIONS: usize = 12;
@@ -168,6 +168,7 @@ impl<'a, S: SolveScalar> Stepper<'a, S> {
         }
         self.field.set_velocities(&out.v);
         self.field.accelerations(&mut out.a, &mut out.lambda);
+        turns::count(self.field.model, self.field.numbering, &mut out.q);
         Ok(())
     }
 

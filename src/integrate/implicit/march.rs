@@ -22,7 +22,7 @@ use crate::model::Model;
 use crate::system::accelerations::Accelerations;
 use crate::system::initial::InitialState;
 use crate::system::redundant_rows::EXCHANGE_WEIGHT;
-use crate::system::{BodyMotion, Numbering, bodies, flexible};
+use crate::system::{BodyMotion, Numbering, bodies, flexible, turns};
 
 /// Integrates from a consistent start.
 ///
@@ -200,7 +200,9 @@ fn march_until<S: SolveScalar>(
                 steadiness.see(end, steady);
             } else if controller.give_up(true) {
                 let (step, time) = at;
-                return Err(IntegrationFailure::SingularPosition { time, step });
+                let drive = String::new();
+                let failure = IntegrationFailure::SingularPosition { time, step, drive };
+                return Err(failure.with_drive(model, &past.from.q));
             } else {
                 retry(&mut run, &mut solver, k);
                 continue;
@@ -238,6 +240,7 @@ fn march_until<S: SolveScalar>(
             run.grid.leave_out(rows);
         }
         past.advance(h, &mut solver.stages, count);
+        turns::count(model, numbering, &mut past.from.q);
         if tape_of(&mut run).is_due(k) {
             let state = (past.clone(), solver.memory.clone());
             let newton = solver.newton();

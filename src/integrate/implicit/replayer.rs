@@ -9,9 +9,11 @@ use crate::integrate::replay::March;
 use crate::integrate::work::WorkCounts;
 use crate::integrate::{IntegrationFailure, Trajectory};
 use crate::model::Model;
+use crate::system::turns;
 
 /// Repeats the steps of a run.
 pub(crate) struct Replayer<'a> {
+    model: &'a Model<f64>,
     run: &'a Trajectory<f64>,
     solver: Solver<'a, f64>,
     past: Past<f64>,
@@ -26,6 +28,7 @@ impl<'a> Replayer<'a> {
         let system = (numbering, scheme);
         let first: Stage<f64> = starting_stage(numbering, &run.initial);
         Self {
+            model,
             run,
             solver: Solver::new((run.method, run.solver), (model, model), system, false),
             past: Past::new(numbering, first, (run.method, scheme.stages())),
@@ -68,6 +71,7 @@ impl March for Replayer<'_> {
         }
         solver.remember(count, k);
         past.advance(h, &mut solver.stages, count);
+        turns::count(self.model, &self.run.numbering, &mut past.from.q);
         Ok(())
     }
 }

@@ -224,4 +224,7 @@ pub(crate) enum Start {
     /// Those at which elastic coordinates neither move nor accelerate: static equilibrium under gravity, loads and the
     /// inertia of the motions that the joints allow.
     Equilibrium,
+    /// As placed before equilibrium is sought; not in files.
+    #[serde(skip)]
+    Placed,
 }

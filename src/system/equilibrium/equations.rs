@@ -217,7 +217,7 @@ impl<'a> Layout<'a> {
         let (mut motions, mut gradients) = (Vec::new(), Vec::new());
         let (a, v) = (self.of_rigid(&x.a), self.of_rigid(&x.v));
         BodyMotion::all(numbering, &x.q, &v, &mut motions);
-        let at = InMotion::new(model, numbering, &motions, S::zero());
+        let at = InMotion::new(model, numbering, &motions, given.time);
         joints::gradients(&at, &mut gradients);
         self.left_out.clear_gradients(&mut gradients);
 

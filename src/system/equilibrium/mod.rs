@@ -12,7 +12,8 @@
 //! at t = 0. The placement q_g is closed and undeformed. The last two rows keep the bodies, along the motions that the
 //! joints allow, where they are placed and with the velocities that they have, in the metric of the mass. Where the
 //! joints allow none, this is static equilibrium. Else the inertia of the motion balances gravity and loads
-//! (*inertia relief*), and centrifugal forces stretch what turns.
+//! (*inertia relief*), and centrifugal forces stretch what turns. Where the bodies turn or move steadily with their loads,
+//! as by a drive, this is relative equilibrium, and they stay deformed so (see [`left_out`]).
 //!
 //! Newton's method solves the equations in real numbers. The part ε ṗ of dual numbers follows from the implicit function
 //! theorem, as in [`super::nearest`]. The matrix of these steps is exact by its products (dual numbers); the factors of
@@ -21,6 +22,7 @@
 mod equations;
 mod matrix;
 mod stability;
+mod unsteady;
 
 use super::bodies::{positions_of, velocities_of};
 use super::failure::AssemblyFailure;
@@ -37,6 +39,7 @@ use equations::{Layout, State};
 use matrix::Factors;
 pub(crate) use stability::growth;
 use std::sync::{Arc, Mutex};
+pub(crate) use unsteady::left_out;
 
 const ITERATIONS: usize = 60;
 /// Newton's method stops at this change of positions, relative to the length scale; and at `STAGNANT`, if changes do
@@ -176,17 +179,22 @@ fn with_solution<S: Scalar, T>(
     of(&given, &solver, &found)
 }
 
-/// The placement of the bodies, and their given velocities.
+/// The placement of the bodies, their given velocities, and the time of drives and loads.
 pub(super) struct Given<S> {
     q: Vec<S>,
     v: Vec<S>,
+    time: S,
 }
 
 impl<S: Scalar> Given<S> {
     fn of(model: &Model<S>, numbering: &Numbering, q: Vec<S>) -> Self {
         let (_, mut v) = guess(model);
         reduce::project(numbering, &mut v);
-        Self { q, v }
+        Self {
+            q,
+            v,
+            time: S::zero(),
+        }
     }
 
     fn map<T>(&self, of: impl Fn(S) -> T) -> Given<T> {
@@ -194,6 +202,7 @@ impl<S: Scalar> Given<S> {
         Given {
             q: all(&self.q),
             v: all(&self.v),
+            time: of(self.time),
         }
     }
 }
@@ -251,7 +260,9 @@ impl Solver<'_> {
             let part = (LARGEST / size).min(1.0);
             let step: Vec<f64> = change.iter().map(|x| part * x).collect();
             self.layout.advance(&mut x, &step);
-            if size <= CLOSE || size <= STAGNANT && size > 0.3 * before {
+            // The first change has the loads of the velocities that the iteration starts with, and not those of drives.
+            let converged = size <= CLOSE || size <= STAGNANT && size > 0.3 * before;
+            if iteration > 1 && converged {
                 self.known.keep(&self.numbers, &x);
                 return Ok(x);
             }

@@ -16,6 +16,7 @@ use super::in_motion::InMotion;
 use super::numbering::Numbering;
 use super::placement::guess;
 use super::side::JointSide;
+use super::turns;
 use crate::linalg::Emit;
 use crate::math::{Scalar, Vec3};
 use crate::model::{Axes, DegreeOfFreedom, JointFrame, LoadKind, Model};
@@ -27,6 +28,8 @@ pub(super) struct Acting<'a, S> {
     bodies: [Option<usize>; 2],
     a: JointSide<'a, S>,
     b: JointSide<'a, S>,
+    /// The angle of the joint with all its turns, if they are counted \[rad\].
+    counted: Option<f64>,
 }
 
 /// Calls `visit(number of the load, its kind, its bodies)` for every load on one or two bodies.
@@ -48,6 +51,11 @@ fn for_each_load<S: Scalar>(
         bodies: [Some(body_a), body_b],
         a: JointSide::fixed(&motions[body_a], frame_a),
         b: JointSide::fixed(body_b.map_or(&ground, |body| &motions[body]), frame_b),
+        counted: None,
+    };
+    let on_joint = |joint: usize| {
+        let joint = &model.joints[joint];
+        acting((joint.body_a, joint.frame_a), (joint.body_b, joint.frame_b))
     };
     for (i, load) in model.loads.iter().enumerate() {
         let acting = match &load.kind {
@@ -61,13 +69,18 @@ fn for_each_load<S: Scalar>(
                 ..
             } => acting((*body_a, at(point_a)), (*body_b, at(point_b))),
             // The angle of a spring is that of the bodies; it does not include drives.
-            LoadKind::TorsionSpring { joint, .. }
-            | LoadKind::Damping { joint, .. }
-            | LoadKind::BallDamping { joint, .. }
-            | LoadKind::Friction { joint, .. } => {
-                let joint = &model.joints[*joint];
-                acting((joint.body_a, joint.frame_a), (joint.body_b, joint.frame_b))
+            LoadKind::TorsionSpring { joint, counter, .. } => {
+                let acting = on_joint(*joint);
+                let ends = [&acting.a.motion.orientation, &acting.b.motion.orientation];
+                let counted = counter.map(|counter| {
+                    let known = motions[counter].position.x.re();
+                    turns::counted(model, (*joint, counter), ends, known)
+                });
+                Acting { counted, ..acting }
             }
+            LoadKind::Damping { joint, .. }
+            | LoadKind::BallDamping { joint, .. }
+            | LoadKind::Friction { joint, .. } => on_joint(*joint),
             LoadKind::Distributed(_) => continue,
         };
         visit(i, &load.kind, &acting);
@@ -229,15 +242,23 @@ fn give_to_states(
     }
 }
 
-/// The first spring of length zero in the placement, if any.
+/// The first spring of length zero in the placement whose ends may not meet, if any.
 pub(crate) fn without_length(model: &Model<f64>) -> Option<&str> {
     let (q, v) = guess(model);
     let mut motions = Vec::new();
     BodyMotion::all(&Numbering::new(model), &q, &v, &mut motions);
     let mut found = None;
     for_each_load(model, &motions, |i, kind, at| {
-        if let LoadKind::Spring { .. } = kind
-            && power::stretch(at).length == 0.0
+        if let LoadKind::Spring {
+            rest_length,
+            stiffness,
+            cubic,
+            damping,
+            ..
+        } = kind
+            && let law = [*rest_length, *stiffness, *cubic, *damping]
+            && !power::may_meet(law)
+            && power::stretch(at, law).length == 0.0
         {
             found = found.or(Some(i));
         }

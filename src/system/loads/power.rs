@@ -6,6 +6,7 @@ use crate::math::{Scalar, Vec3};
 use crate::model::{Axes, ConstraintRow, DegreeOfFreedom, LoadKind};
 use crate::system::constraint;
 use crate::system::marker::MarkerKinematics;
+use std::f64::consts::TAU;
 
 /// The row whose rate is that of a displacement along the axis of a joint.
 pub(super) const SLIDE: ConstraintRow = ConstraintRow::Sliding { a: 2 };
@@ -53,8 +54,8 @@ pub(super) fn forces<S: Scalar>(
             damping,
             ..
         } => {
-            let at = stretch(at);
             let law = [*rest_length, *stiffness, *cubic, *damping];
+            let at = stretch(at, law);
             let f = at.direction * tension(&at, law);
             [
                 (-f, -sa.cross(&ra.tr_mul(&f))),
@@ -103,9 +104,11 @@ pub(super) fn potential<S: Scalar>(kind: &LoadKind<S>, at: &Acting<S>) -> S {
             rest_length,
             stiffness,
             cubic,
+            damping,
             ..
         } => {
-            let x = stretch(at).length - *rest_length;
+            let law = [*rest_length, *stiffness, *cubic, *damping];
+            let x = stretch(at, law).length - *rest_length;
             let square = x * x;
             square * (*stiffness * 0.5 + *cubic * square * 0.25)
         }
@@ -158,12 +161,19 @@ pub(super) fn turn_rate<S: Scalar>(at: &Acting<S>) -> S {
     e.dot(&a.omega) - (a.rotation * e).dot(&(b.rotation * b.omega))
 }
 
-/// The angle φ of frame A relative to frame B about the third axis, minus `rest`, in (−π, π].
+/// The angle φ of frame A relative to frame B about the third axis, minus `rest`: in (−π, π], if its turns are not counted.
 pub(super) fn angle<S: Scalar>(at: &Acting<S>, rest: S) -> S {
     let a1 = at.a.motion.rotation * at.a.frame.axes[0];
     let [x, y] = [0, 1].map(|i| a1.dot(&(at.b.motion.rotation * at.b.frame.axes[i])));
     let (s, c) = rest.sin_cos();
-    (y * c - x * s).atan2(x * c + y * s)
+    let angle = (y * c - x * s).atan2(x * c + y * s);
+    match at.counted {
+        Some(counted) => {
+            let turns = ((counted - rest.re() - angle.re()) / TAU).round();
+            angle + TAU * turns
+        }
+        None => angle,
+    }
 }
 
 /// Length of a spring, its rate, and its direction from B to A.
@@ -171,18 +181,36 @@ pub(super) struct SpringLength<S> {
     pub length: S,
     pub rate: S,
     pub direction: Vec3<S>,
+    /// The vector from B to A.
+    pub apart: Vec3<S>,
 }
 
-pub(super) fn stretch<S: Scalar>(at: &Acting<S>) -> SpringLength<S> {
+/// Whether the ends of a spring of this rest length, k, k3 and c may meet: its force −(k + k3 l²) d is then smooth at d = 0.
+pub(super) fn may_meet<S: Scalar>([rest, _, _, c]: [S; 4]) -> bool {
+    rest.re() == 0.0 && c.re() == 0.0
+}
+
+/// The stretch of a spring of this rest length, k, k3 and c. Where ends meet that may, it has no direction, and the rate
+/// of its length is set to zero.
+pub(super) fn stretch<S: Scalar>(at: &Acting<S>, law: [S; 4]) -> SpringLength<S> {
     let a = MarkerKinematics::point(at.a.motion, &at.a.frame.point);
     let b = MarkerKinematics::point(at.b.motion, &at.b.frame.point);
     let d = a.x - b.x;
+    if may_meet(law) && d.iter().all(|x| x.re() == 0.0) {
+        return SpringLength {
+            length: S::zero(),
+            rate: S::zero(),
+            direction: Vec3::zeros(),
+            apart: d,
+        };
+    }
     let length = length(&d);
     let direction = d / length;
     SpringLength {
         length,
         rate: direction.dot(&(a.rate - b.rate)),
         direction,
+        apart: d,
     }
 }
 

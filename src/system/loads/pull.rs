@@ -1,7 +1,7 @@
 //! The transposed derivative of the power ψᵀf of each kind of load.
 
 use super::Acting;
-use super::power::{SLIDE, SpringLength, angle, stretch, tanh, turn_rate};
+use super::power::{SLIDE, SpringLength, angle, may_meet, stretch, tanh, turn_rate};
 use crate::math::{Scalar, Vec3};
 use crate::model::{Axes, DegreeOfFreedom, LoadKind};
 use crate::system::bodies::BodyMotion;
@@ -60,6 +60,7 @@ pub(super) fn pull<S: Scalar>(
         bodies: at.bodies,
         a: JointSide::fixed(&motions[0], at.a.frame),
         b: JointSide::fixed(&motions[1], at.b.frame),
+        counted: at.counted,
     };
     match kind {
         LoadKind::Force {
@@ -115,15 +116,19 @@ pub(super) fn pull<S: Scalar>(
             damping,
             ..
         } => {
-            let now = stretch(at);
-            let virtual_rate = stretch(&virtually).rate;
+            let law = [*rest_length, *stiffness, *cubic, *damping];
+            if may_meet(law) {
+                return pull_meeting((at, &virtually), law);
+            }
+            let now = stretch(at, law);
+            let virtual_rate = stretch(&virtually, law).rate;
             let x = now.length - *rest_length;
             let tension = x * (*stiffness + *cubic * x * x) + *damping * now.rate;
             // ψᵀf = −tension · (virtual rate).
             let by_length = -(*stiffness + *cubic * x * x * 3.0) * virtual_rate;
-            pull_rate(&virtually, (S::zero(), -tension), &mut out);
+            pull_rate(&virtually, &now, (S::zero(), -tension), &mut out);
             hold_virtual(&mut out);
-            pull_rate(at, (by_length, -(*damping * virtual_rate)), &mut out);
+            pull_rate(at, &now, (by_length, -(*damping * virtual_rate)), &mut out);
             out.scalars = [
                 -by_length,
                 -(x * virtual_rate),
@@ -201,12 +206,14 @@ pub(super) fn pull_potential<S: Scalar>(
             rest_length,
             stiffness,
             cubic,
+            damping,
             ..
         } => {
-            let x = stretch(at).length - *rest_length;
+            let now = stretch(at, [*rest_length, *stiffness, *cubic, *damping]);
+            let x = now.length - *rest_length;
             let square = x * x;
             let by_x = weight * x * (*stiffness + *cubic * square);
-            pull_rate(at, (by_x, S::zero()), &mut out);
+            pull_rate(at, &now, (by_x, S::zero()), &mut out);
             out.scalars[0] = -by_x;
             out.scalars[1] = weight * square * 0.5;
             out.scalars[2] = weight * square * square * 0.25;
@@ -266,20 +273,52 @@ fn pull_axis<S: Scalar>(side: &JointSide<S>, axis: usize, x: Vec3<S>, out: &mut 
     out.frame.axes[axis] += by.vector;
 }
 
+/// Derivatives of the power −(k + k3 l²) d · w of a spring whose ends may meet, w their virtual velocity from each other.
+/// Its rest length and its damping are zero, with derivatives where the spring has a direction.
+fn pull_meeting<S: Scalar>(
+    (at, virtually): (&Acting<S>, &Acting<S>),
+    law @ [_, k, k3, _]: [S; 4],
+) -> Pulled<S> {
+    let mut out = Pulled::zero();
+    let now = stretch(at, law);
+    let d = now.apart;
+    let speed = |side: &JointSide<S>| side.point_jet().rate;
+    let w = speed(&virtually.a) - speed(&virtually.b);
+    let square = d.dot(&d);
+    let (force, power, zero) = (k + k3 * square, d.dot(&w), Vec3::zeros());
+    pull_point(&virtually.a, [zero, -d * force], &mut out.a);
+    pull_point(&virtually.b, [zero, d * force], &mut out.b);
+    hold_virtual(&mut out);
+    let by_d = -(w * force + d * (k3 * power * 2.0));
+    pull_point(&at.a, [by_d, zero], &mut out.a);
+    pull_point(&at.b, [-by_d, zero], &mut out.b);
+    let along = now.direction.dot(&w);
+    out.scalars = [
+        (k + k3 * square * 3.0) * along,
+        -power,
+        -(square * power),
+        -(now.rate * along),
+    ];
+    out
+}
+
 /// Pulls the cotangents of a spring's length and its rate back.
 pub(super) fn pull_rate<S: Scalar>(
     at: &Acting<S>,
+    now: &SpringLength<S>,
     (by_length, by_rate): (S, S),
     out: &mut Pulled<S>,
 ) {
-    let SpringLength {
-        length, direction, ..
-    } = stretch(at);
+    let (length, direction) = (now.length, now.direction);
     let speed = |side: &JointSide<S>| side.point_jet().rate;
     let apart = speed(&at.a) - speed(&at.b);
     // The component of a displacement across the direction turns it.
     let across = apart - direction * direction.dot(&apart);
-    let x = direction * by_length + across * (by_rate / length);
+    let turning = match by_rate.is_zero() {
+        true => S::zero(),
+        false => by_rate / length,
+    };
+    let x = direction * by_length + across * turning;
     let rate = direction * by_rate;
     pull_point(&at.a, [x, rate], &mut out.a);
     pull_point(&at.b, [-x, -rate], &mut out.b);

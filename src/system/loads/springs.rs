@@ -41,7 +41,16 @@ pub(crate) fn value<S: Scalar>(at: &InMotion<S>, spring: Spring) -> S {
 
 fn of<S: Scalar>(kind: &LoadKind<S>, at: &Acting<S>, part: SpringPart) -> S {
     match (kind, part) {
-        (LoadKind::Spring { .. }, SpringPart::Length) => stretch(at).length,
+        (
+            LoadKind::Spring {
+                rest_length,
+                stiffness,
+                cubic,
+                damping,
+                ..
+            },
+            SpringPart::Length,
+        ) => stretch(at, [*rest_length, *stiffness, *cubic, *damping]).length,
         (
             LoadKind::Spring {
                 rest_length,
@@ -51,7 +60,10 @@ fn of<S: Scalar>(kind: &LoadKind<S>, at: &Acting<S>, part: SpringPart) -> S {
                 ..
             },
             SpringPart::Tension,
-        ) => tension(&stretch(at), [*rest_length, *stiffness, *cubic, *damping]),
+        ) => {
+            let law = [*rest_length, *stiffness, *cubic, *damping];
+            tension(&stretch(at, law), law)
+        }
         (
             LoadKind::TorsionSpring {
                 rest_angle,
@@ -89,7 +101,19 @@ pub(crate) fn pull_back(at: &InMotion<f64>, spring: Spring, weight: f64, out: &m
 fn pull(kind: &LoadKind<f64>, at: &Acting<f64>, part: SpringPart, weight: f64) -> Pulled<f64> {
     let mut out = Pulled::zero();
     match (kind, part) {
-        (LoadKind::Spring { .. }, SpringPart::Length) => pull_rate(at, (weight, 0.0), &mut out),
+        (
+            LoadKind::Spring {
+                rest_length,
+                stiffness,
+                cubic,
+                damping,
+                ..
+            },
+            SpringPart::Length,
+        ) => {
+            let now = stretch(at, [*rest_length, *stiffness, *cubic, *damping]);
+            pull_rate(at, &now, (weight, 0.0), &mut out);
+        }
         (
             LoadKind::Spring {
                 rest_length,
@@ -100,10 +124,10 @@ fn pull(kind: &LoadKind<f64>, at: &Acting<f64>, part: SpringPart, weight: f64) -
             },
             SpringPart::Tension,
         ) => {
-            let now = stretch(at);
+            let now = stretch(at, [*rest_length, *stiffness, *cubic, *damping]);
             let x = now.length - *rest_length;
             let by_length = weight * (*stiffness + 3.0 * *cubic * x * x);
-            pull_rate(at, (by_length, weight * *damping), &mut out);
+            pull_rate(at, &now, (by_length, weight * *damping), &mut out);
             out.scalars = [
                 -by_length,
                 weight * x,

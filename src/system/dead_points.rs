@@ -1,0 +1,63 @@
+//! Dead points of drives: positions in which a driven joint cannot move at first, however the others move, so that the drive
+//! does not determine the motion.
+
+use super::placement::guess;
+use super::redundancy::{BESIDE, Rows};
+use super::redundant_rows::RedundantRows;
+use crate::model::{Joint, Model};
+
+/// A row takes part in a combination of unit rows above this weight.
+const TAKES_PART: f64 = 0.01;
+
+/// Whether a joint that is driven cannot move at the placement, however the others move, but can near it: a dead point.
+pub(crate) fn is_at_dead_point(model: &Model<f64>, joint: &str) -> bool {
+    let mut free = model.clone();
+    let named = |own: &&mut Joint<f64>| own.name == joint;
+    (free.joints.iter_mut().filter(named)).for_each(|own| own.drives.clear());
+    let all: Vec<usize> = (0..model.joints.len()).collect();
+    let (with, without) = (Rows::new(model, &all), Rows::new(&free, &all));
+    let Some(placed) = without.close(guess(model).0) else {
+        return false;
+    };
+    let mut distances = BESIDE.iter();
+    let Some(beside) = distances.find_map(|&distance| without.beside(&placed, distance)) else {
+        return false;
+    };
+    let rank =
+        |rows: &Rows, q: &[f64]| rows.independent(q).into_iter().filter(|kept| *kept).count();
+    rank(&with, &placed) == rank(&without, &placed)
+        && rank(&with, &beside) > rank(&without, &beside)
+}
+
+/// The driven joint whose row is part of the combination of rows that is nearest to zero at q: the drive is at a dead
+/// point, if this is a singular position.
+pub(crate) fn driven_to_dead_point<'a>(
+    model: &'a Model<f64>,
+    q: &[f64],
+    time: f64,
+) -> Option<&'a str> {
+    let all: Vec<usize> = (0..model.joints.len()).collect();
+    let mut rows = Rows::new(model, &all);
+    rows.time = time;
+    let left_out = RedundantRows::of(model, &rows.numbering);
+    let imposed: Vec<usize> = rows.numbers().filter(|&i| !left_out.contains(i)).collect();
+    let svd = rows
+        .gradients(q)
+        .0
+        .select_columns(&imposed)
+        .svd(false, true);
+    let (least, _) = svd.singular_values.argmin();
+    let combination = svd.v_t.as_ref()?.row(least).clone_owned();
+    let part = |(k, &i): (usize, &usize)| {
+        let joint = &model.joints[rows.numbering.joint_of_row(i)];
+        let row = joint
+            .rows()
+            .nth(i - rows.numbering.rows(rows.numbering.joint_of_row(i)).start)?;
+        let driven = joint
+            .drives
+            .iter()
+            .any(|drive| drive.dof.driven_row() == row);
+        (driven && combination[k].abs() > TAKES_PART).then_some(joint.name.as_str())
+    };
+    imposed.iter().enumerate().find_map(part)
+}
