@@ -103,6 +103,10 @@ const STEPS: [f64; 2] = [1e-4, 1e-5];
 /// Differences by different steps agree to this share of their distance to the derivative.
 const AGREE: f64 = 0.1;
 
+/// Least error of a slope relative to the function's gradient. At a stationary point slopes vanish but for
+/// what convergence and rounding leave, and so does their ratio.
+const OF_GRADIENT: f64 = 1e-3;
+
 /// A run without a solution becomes [`Status::Inconsistent`] if the derivative of a function along
 /// one direction differs from its central differences. These must agree for two steps, and the
 /// differences to either side must come nearer to each other with the step: then the function is
@@ -138,7 +142,7 @@ fn unless_gradients_are_wrong(program: &mut Program<'_>, mut finish: FinalIterat
         };
         differences.push([ahead, behind]);
     }
-    let disagrees = |value: &dyn Fn(&Point) -> f64, slope: f64| {
+    let disagrees = |value: &dyn Fn(&Point) -> f64, slope: f64, gradient: f64| {
         let here = value(at);
         let of = |k: usize| {
             let (length, [ahead, behind]) = (STEPS[k] * size, &differences[k]);
@@ -149,21 +153,22 @@ fn unless_gradients_are_wrong(program: &mut Program<'_>, mut finish: FinalIterat
         let ((coarse, coarse_bend), (fine, fine_bend)) = (of(0), of(1));
         let gap = (fine - slope).abs();
         let rounding = 1e3 * f64::EPSILON * here.abs() / (STEPS[1] * size);
-        let wrong = gap > AGREE * fine.abs().max(slope.abs()) && gap > rounding;
+        let least = (AGREE * fine.abs().max(slope.abs())).max(OF_GRADIENT * gradient);
+        let wrong = gap > least && gap > rounding;
         let smooth = fine_bend <= 0.5 * coarse_bend + rounding;
         (wrong && smooth && (coarse - fine).abs() <= AGREE * gap).then_some(fine)
     };
     let unit = program.scaling.objective;
     let slope = finish.slopes.g.dot(&direction);
-    let objective =
-        disagrees(&|p| p.f, slope).map(|fine| ("the objective".into(), slope / unit, fine / unit));
+    let objective = disagrees(&|p| p.f, slope, finish.slopes.g.amax())
+        .map(|fine| ("the objective".into(), slope / unit, fine / unit));
     let row = |k: usize| {
         let j = program.rows[k];
         let (unit, slope) = (
             program.scaling.constraints[j],
             finish.slopes.a.row_dot(k, &direction),
         );
-        let fine = disagrees(&|p| p.c[k], slope)?;
+        let fine = disagrees(&|p| p.c[k], slope, finish.slopes.a.row_amax(k))?;
         Some((program.constraint_name(j), slope / unit, fine / unit))
     };
     let found = objective.or_else(|| (0..program.rows.len()).find_map(row));

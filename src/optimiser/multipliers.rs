@@ -52,6 +52,27 @@ impl ScaledMultipliers {
         self
     }
 
+    /// Sets multipliers to zero that are smaller than the distance to their bound: what the barrier leaves of the
+    /// force of a bound that is not active. Where the objective and its gradients vanish, their products are not
+    /// small beside it.
+    pub(crate) fn release(&mut self, program: &Program<'_>, point: &Point) {
+        for k in 0..self.y.len() {
+            let (lower, upper) = (program.row_lower[k], program.row_upper[k]);
+            let bound = if self.y[k] > 0.0 { upper } else { lower };
+            if lower < upper && self.y[k].abs() < (bound - point.c[k]).abs() {
+                self.y[k] = 0.0;
+            }
+        }
+        for i in 0..self.zl.len() {
+            if self.zl[i] < point.x[i] - program.lower[i] {
+                self.zl[i] = 0.0;
+            }
+            if self.zu[i] < program.upper[i] - point.x[i] {
+                self.zu[i] = 0.0;
+            }
+        }
+    }
+
     /// Sets multipliers to zero that have the wrong sign for the bounds of their row.
     pub(crate) fn clip(&mut self, program: &Program<'_>) {
         for k in 0..self.y.len() {

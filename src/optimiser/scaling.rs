@@ -225,7 +225,7 @@ impl Program<'_> {
                 .map(|(k, v)| in_user_units(v, k))
                 .fold(0.0, f64::max);
             self.scaling.constraint_gradients[j] = norm;
-            if norm == 0.0 {
+            if norm == 0.0 && n > 0 {
                 let name = self.nlp().constraint_name(j);
                 self.scaling.zero_rows.push(name);
             }

@@ -193,3 +193,28 @@ fn the_trust_region_refuses_sizes_for_which_it_is_not_meant() {
         assert!(solved(2001, method).converged(), "{method:?}");
     }
 }
+
+/// No x satisfies c(x) ≥ 0. At the largest c its slope is what convergence and rounding leave of it, 1e-6 of the
+/// gradient. By values and by gradients it may differ by its own size, and says nothing.
+#[test]
+fn rests_of_slopes_at_a_stationary_point_are_not_called_wrong() {
+    for error in [3e-7, 1e-6, 1e-5] {
+        for steep in [1.0, 100.0] {
+            for method in METHODS {
+                let mut nlp =
+                    Functions::new(&[0.1, 0.2, 1.0], |x| (x[0] + x[1], vec![1.0, 1.0, 0.0]))
+                        .rows(&[0.0], &[f64::INFINITY], |x| {
+                            let (a, b) = (x[0] - 0.3, x[1] + 0.2);
+                            let c = -65.0 - a * a - 2.0 * b * b + steep * x[2];
+                            let slopes =
+                                vec![-2.0 * a + steep * error, -4.0 * b + steep * error, steep];
+                            (vec![c], Jacobian::dense(1, 3, slopes))
+                        })
+                        .bounds(&[-2.0, -2.0, -1.0], &[2.0, 2.0, 0.5]);
+                let status = run(&mut nlp, method).status;
+                let wrong = matches!(status, Status::Inconsistent { .. } | Status::Converged);
+                assert!(!wrong, "{error}, {steep}, {method:?}: {status:?}");
+            }
+        }
+    }
+}

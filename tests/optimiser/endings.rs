@@ -6,6 +6,7 @@ use crate::problems::residuals;
 use crate::problems::scaled;
 
 use flexbody::optimiser::{BoundSide, Kkt, Method, Options, Outcome, Silent, Status, solve};
+use problems::dual::Dual;
 use problems::hock_schittkowski;
 use problems::problem::{INF, Problem};
 use residuals::Residuals;
@@ -427,5 +428,104 @@ fn variables_wake_where_they_matter() {
         );
         let found = Residuals::in_unit(&mut problem, &outcome, 1.0);
         assert!(found.stationarity <= 1e-6, "{method:?}: {found:?}");
+    }
+}
+
+/// Minimise sums of squares that vanish at the optimum, with bounds and rows that are not active. Their
+/// gradients vanish too, and fast, so neither gives a unit.
+#[test]
+fn least_values_of_zero_are_recognised() {
+    type Square = (&'static str, Vec<f64>, fn(&[Dual]) -> Dual);
+    let squares: [Square; 8] = [
+        ("ring", vec![0.3, 0.2], |x| {
+            ((x[0] * x[0] + x[1] * x[1]).sqrt() - 1.0).powi(2)
+        }),
+        ("circle", vec![1.2, 0.9], |x| {
+            (x[0] * x[0] + x[1] * x[1] - 1.0).powi(2)
+        }),
+        ("product", vec![0.7, 1.1], |x| (x[0] * x[1] - 1.0).powi(2)),
+        ("point", vec![-1.0], |x| (x[0] - 0.3).powi(2)),
+        ("valley", vec![0.8, 0.7], |x| {
+            (x[1] - x[0] * x[0]).powi(2) * 10.0 + (x[0] - 1.0).powi(2)
+        }),
+        ("bowl", vec![1.5, 0.0, -1.0], |x| {
+            let term = |i: usize| (x[i] - 0.2 * i as f64).powi(2) * (i + 1) as f64;
+            term(0) + term(1) + term(2)
+        }),
+        ("decay", vec![0.5, 1.0], |x| {
+            let at = |t: f64| (x[0] * (x[1] * -t).exp() - 0.8 * (-0.6 * t).exp()).powi(2);
+            at(0.0) + at(0.5) + at(1.0) + at(1.5)
+        }),
+        ("sphere", vec![0.4, 0.3, 0.2], |x| {
+            ((x[0] * x[0] + x[1] * x[1] + x[2] * x[2]).sqrt() - 1.0).powi(2)
+        }),
+    ];
+    for (name, start, square) in squares {
+        for unit in [1e-4, 1.0, 1e4] {
+            for with_row in [false, true] {
+                for method in METHODS {
+                    let n = start.len();
+                    let f = move |x: &[Dual]| square(x) * unit;
+                    let mut nlp =
+                        Problem::new(name, &start, 0.0, f).bounds(&vec![-2.0; n], &vec![2.0; n]);
+                    if with_row {
+                        nlp = nlp.rows(1, 0, |x| vec![x[0] + 30.0]);
+                    }
+                    let outcome = solve(&mut nlp, &with(method), &mut Silent);
+                    let context = format!("{name}, {unit}, {with_row}, {method:?}: {outcome:?}");
+                    assert_eq!(outcome.status, Status::Converged, "{context}");
+                    assert!(outcome.objective <= 1e-9 * unit, "{context}");
+                    assert!(outcome.counts.evaluations < 100, "{context}");
+                }
+            }
+        }
+    }
+}
+
+/// Minimise the energy ½ k (r − L)² of a spring, zero on a ring. From most starts Newton's method on it squares the
+/// gradients at each step, so two or three points have gradients that mean anything.
+#[test]
+fn the_lowest_ring_of_a_spring_is_recognised_from_everywhere() {
+    for stiffness in [0.5, 5.0, 50.0] {
+        for length in [0.35, 0.5, 0.6] {
+            for k in 0..12 {
+                let angle = 0.3 + 0.51 * f64::from(k);
+                let reach = 0.08 + 0.07 * f64::from(k);
+                let start = [reach * angle.cos(), reach * angle.sin()];
+                for method in METHODS {
+                    let energy = move |x: &[Dual]| {
+                        let r = (x[0] * x[0] + x[1] * x[1]).sqrt();
+                        (r - length).powi(2) * (0.5 * stiffness * 4.0)
+                    };
+                    let mut nlp = Problem::new("ring", &start, 0.0, energy).all_within(-1.0, 1.0);
+                    let outcome = solve(&mut nlp, &with(method), &mut Silent);
+                    let context = format!("{stiffness}, {length}, {k}, {method:?}: {outcome:?}");
+                    assert_eq!(outcome.status, Status::Converged, "{context}");
+                    assert!(outcome.objective <= 1e-9 * stiffness, "{context}");
+                    assert!(outcome.counts.evaluations < 100, "{context}");
+                }
+            }
+        }
+    }
+}
+
+/// A start at the least value of zero is a solution, whatever bounds and rows are far away. No step moves it,
+/// and the barrier falls no further.
+#[test]
+fn starts_at_a_least_value_of_zero_are_solutions() {
+    for unit in [1e-4, 1.0, 1e4] {
+        for reach in [0.4, 30.0] {
+            for method in METHODS {
+                let mut nlp = Problem::new("rest", &[0.0, 0.0], 0.0, move |x| {
+                    (x[0] * x[0] + x[1] * x[1]) * unit
+                })
+                .bounds(&[-1.0, -2.0], &[2.0, 1.0])
+                .rows(1, 0, move |x| vec![x[0] * x[0] * -1.0 + reach]);
+                let outcome = solve(&mut nlp, &with(method), &mut Silent);
+                let context = format!("{unit}, {reach}, {method:?}: {outcome:?}");
+                assert_eq!(outcome.status, Status::Converged, "{context}");
+                assert_eq!(outcome.objective, 0.0, "{context}");
+            }
+        }
     }
 }

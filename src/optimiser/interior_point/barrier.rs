@@ -50,6 +50,11 @@ impl BarrierRule {
         }
     }
 
+    /// Whether μ can fall no further.
+    pub(crate) fn is_least(&self) -> bool {
+        self.mu <= self.least
+    }
+
     /// Updates μ for the iteration that starts at `at`; returns whether it changed.
     pub(crate) fn update(&mut self, at: &Iterate, layout: &Layout, b: &mut QuasiNewton) -> bool {
         let before = self.mu;

@@ -133,7 +133,21 @@ impl InteriorPoint {
             zu: self.at.zu.rows(0, n).into_owned(),
         };
         z.clip(program);
+        if self.barrier.is_least() && self.gap() > self.allowed_gap(program) {
+            z.release(program, &self.at.point);
+        }
         z
+    }
+
+    /// Sum of the products of multipliers and distances.
+    fn gap(&self) -> f64 {
+        self.at.products(&self.layout).iter().sum()
+    }
+
+    /// The gap that a solution may have.
+    fn allowed_gap(&self, program: &Program<'_>) -> f64 {
+        let least = program.unit_of_objective() * program.scaling.objective;
+        0.1 * program.options.tolerance * self.at.point.f.abs().max(least)
     }
 
     /// Scaled residual of the optimality conditions.
@@ -360,14 +374,11 @@ impl InteriorPoint {
         if scaled > program.options.tolerance {
             return Verdict::Unsolved;
         }
-        let z = self.multipliers(program);
-        let gap: f64 = self.at.products(&self.layout).iter().sum();
-        let least = program.unit_of_objective() * program.scaling.objective;
-        let unit = self.at.point.f.abs().max(least);
-        let (point, slopes) = (&self.at.point, &self.at.slopes);
-        if gap > 0.1 * program.options.tolerance * unit {
+        if !self.barrier.is_least() && self.gap() > self.allowed_gap(program) {
             return Verdict::Unsolved;
         }
+        let z = self.multipliers(program);
+        let (point, slopes) = (&self.at.point, &self.at.slopes);
         judge(program, point, slopes, &z, scaled)
     }
 }

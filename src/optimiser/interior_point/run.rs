@@ -76,10 +76,16 @@ fn finish_interior_point(program: &mut Program<'_>, mut method: InteriorPoint) -
         let zero = DVector::zeros(point.c.len());
         let y = if useless { &zero } else { &multipliers.y };
         let fitted = ScaledMultipliers::polished(program, &point, &slopes, y);
-        let residual = scaled_residual(program, &point, &slopes, &fitted);
-        let solved = is_solved_at_end(program, &point, &slopes, &fitted, residual);
-        if useless || solved {
-            (multipliers, scaled) = (fitted, residual);
+        // A barrier that has not fallen leaves forces of bounds that are not active.
+        let mut released = fitted.clone();
+        released.release(program, &point);
+        for choice in [fitted, released] {
+            let residual = scaled_residual(program, &point, &slopes, &choice);
+            let solved = is_solved_at_end(program, &point, &slopes, &choice, residual);
+            if useless || solved {
+                (multipliers, scaled) = (choice, residual);
+                break;
+            }
         }
     }
     FinalIterate {
