@@ -131,6 +131,17 @@ impl<S: Scalar> Function<S> {
         }
     }
 
+    /// The same, to be changed.
+    pub(crate) fn reaction_mut(&mut self) -> Option<&mut Wrench<S>> {
+        match self {
+            Function::Reduced {
+                instant: Instant::Reaction(wrench),
+                ..
+            } => Some(wrench),
+            _ => None,
+        }
+    }
+
     /// The joint or load that the function observes by its number, if any.
     pub(crate) fn part(&mut self) -> Option<Part<'_>> {
         let Function::Reduced { instant, .. } = self else {

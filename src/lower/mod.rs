@@ -192,10 +192,11 @@ impl Lowering {
     }
 
     fn leave_out<S: Scalar>(&self, scene: &mut Scene<S>) {
-        let model = &mut scene.model;
         if let Ok(plane) = &self.plane {
-            plane.apply(model);
+            reactions::turn_into_plane(scene, &plane.normal);
+            plane.apply(&mut scene.model);
         }
+        let model = &mut scene.model;
         for &body in &self.points {
             model.bodies[body].mobility = Mobility::point();
         }

@@ -11,7 +11,8 @@
 //! Rows of a joint by the axes that they use, along n \[N\] or across it (P):
 //!
 //! ```text
-//! Coincident k         left out for the k of the largest |n_k|: d · n = 0 identically
+//! Coincident k         left out for the k of the largest |n_k|: d · n = 0 identically. So the multipliers give
+//!                      a force but for a part along n (see `reactions::turn_into_plane`)
 //! Perpendicular N P    left out
 //! Perpendicular P P    kept
 //! Sliding N            left out

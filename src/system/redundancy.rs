@@ -116,7 +116,7 @@ pub(crate) fn unit_rows(model: &Model<f64>, q: &[f64]) -> (DMatrix<f64>, Vec<usi
 }
 
 /// Joints in loops of bodies and ground. Without loops no row is redundant.
-fn in_loops<S>(model: &Model<S>) -> Vec<usize> {
+pub(crate) fn in_loops<S>(model: &Model<S>) -> Vec<usize> {
     let ground = model.bodies.len();
     let ends = |j: usize| {
         let joint = &model.joints[j];

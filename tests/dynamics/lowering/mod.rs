@@ -2,6 +2,7 @@
 //! them, with the same steps. Reductions that do not apply are named with the reason.
 
 mod explanation;
+mod oblique;
 mod planes;
 mod points;
 mod reactions;
