@@ -50,10 +50,11 @@ pub(crate) struct RunOptions {
     /// by a JSON Pointer as /bodies/arm/mass. May be repeated.
     #[arg(long, value_name = "PATH")]
     pub sensitivity: Vec<String>,
-    /// Optimises for n values of a number of the file from a to b, each from the optimum before,
-    /// and writes sweep.csv and sweep.svg instead of the other results.
+    /// Optimises for n values of a number of the file from a to b, each from the optimum before and
+    /// from the start of the file, or from all of --starts, and keeps the better. Writes sweep.csv
+    /// and sweep.svg instead of the other results.
     #[arg(long, value_name = "PATH=a..b,n", value_parser = range,
-          conflicts_with_all = ["resume", "from", "starts", "second_order", "sensitivity"])]
+          conflicts_with_all = ["resume", "from", "second_order", "sensitivity"])]
     pub sweep: Option<Range>,
     /// Checks by differences of gradients whether the optimum is a minimum of second order. Exit
     /// code 1 if it is not.

@@ -1,8 +1,9 @@
 //! `optimize compare`, `optimize plot` and `optimize schema`.
 
 use super::arguments::Comparison;
+use super::optimise::STATE;
 use super::{DONE, Failure, NOT_REACHED, print, record};
-use crate::driver::figures;
+use crate::driver::{WarmStart, figures};
 use crate::report::{Tolerances, prepare_directory, read_text, write_all};
 use std::path::{Path, PathBuf};
 
@@ -23,8 +24,11 @@ pub(crate) fn plot(directory: &Path) -> Result<u8, Failure> {
     let (_, optimum) = record(directory)?;
     let history = read_text(&directory.join("history.csv"))?;
     let history = crate::report::History::from_csv(&history)?;
+    let state = std::fs::read(directory.join(STATE)).ok();
+    let state = state.and_then(|text| serde_json::from_slice::<WarmStart>(&text).ok());
     let _held = prepare_directory(directory)?;
-    let files = figures::of_record(&optimum, &history, directory).map_err(Failure::bad_input)?;
+    let files = figures::of_record(&optimum, &history, state.as_ref(), directory)
+        .map_err(Failure::bad_input)?;
     let files: Vec<(PathBuf, Vec<u8>)> = files
         .into_iter()
         .map(|(name, bytes)| (directory.join(name), bytes))

@@ -1,7 +1,9 @@
 //! Interrupts: Ctrl-C, and the signals INT, TERM and HUP.
 
 use super::INTERRUPTED;
+use super::progress::progress;
 use std::sync::atomic::{AtomicBool, Ordering};
+use std::time::Instant;
 
 /// Whether the present work checks [`asked`] and ends by itself.
 static HEEDED: AtomicBool = AtomicBool::new(false);
@@ -9,7 +11,7 @@ static HEEDED: AtomicBool = AtomicBool::new(false);
 static ASKED: AtomicBool = AtomicBool::new(false);
 
 /// Makes an interrupt end the program with its exit code. The first one during [heeding](heed) work
-/// only sets [`asked`], so that the results are written first.
+/// only sets [`asked`] and ends the simulations under way, so that the results are written first.
 pub(crate) fn listen() {
     // If no handler can be set, the system ends the program.
     let _ = ctrlc::set_handler(|| {
@@ -17,6 +19,7 @@ pub(crate) fn listen() {
         if !(first && HEEDED.load(Ordering::Relaxed)) {
             std::process::exit(i32::from(INTERRUPTED));
         }
+        progress().end_by(Instant::now());
     });
 }
 

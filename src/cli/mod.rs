@@ -229,8 +229,9 @@ fn read_with(job: &Job, overrides: &[Override]) -> Result<Problem, Failure> {
         problem.lowering = None;
     }
     problem.simulation.memory = job.memory;
+    problem.simulation.limits.progress = Some(progress::progress());
     if !job.quiet {
-        problem.simulation.limits.progress = Some(progress::watched());
+        progress::watch();
     }
     Ok(problem)
 }

@@ -4,12 +4,12 @@ use super::arguments::{Job, RunOptions};
 use super::parameters::{Parameter, add_sensitivities, parameter, sweep};
 use super::progress::show;
 use super::records::{Records, Start, changed, refuse_without_run};
-use super::starts::several;
+use super::starts::{several, spread};
 use super::{
     DONE, Failure, INTERRUPTED, NOT_REACHED, NUMERICAL_FAILURE, draw, interrupt, print, read,
     record, refine, shown, tell,
 };
-use crate::driver::{self, Optimisation, WarmStart, certificate, figures, multi_start};
+use crate::driver::{self, Optimisation, WarmStart, certificate, figures};
 use crate::optimiser::{Counts, Status};
 use crate::problem::Problem;
 use crate::report::optimum::Curvature;
@@ -28,7 +28,7 @@ const OPTIMUM: &str = "optimum.json";
 /// The history during the run. The other results are still those of an earlier run.
 const PARTIAL: &str = "history.partial.csv";
 /// The state of the optimiser, for a warm start.
-const STATE: &str = "state.json";
+pub(super) const STATE: &str = "state.json";
 /// The distinct optima of several starts.
 const OPTIMA: &str = "optima.csv";
 
@@ -37,7 +37,7 @@ pub(crate) fn optimise(job: &Job, course: &RunOptions) -> Result<u8, Failure> {
     let problem = read(job)?;
     complete(&problem, job)?;
     if let Some(range) = &course.sweep {
-        return sweep(job, &problem, range);
+        return sweep(job, &problem, range, course.starts.unwrap_or(1));
     }
     let parameters = course.sensitivity.iter();
     let parameters = parameters.map(|path| parameter(job, &problem, path));
@@ -108,11 +108,12 @@ pub(crate) fn optimise(job: &Job, course: &RunOptions) -> Result<u8, Failure> {
             }
             let message = &done.optimum.message;
             let what = format!("{}: {message} before the start had values", problem.name);
-            return Err(Failure::new(NOT_REACHED, what));
+            let code = if stopped() { INTERRUPTED } else { NOT_REACHED };
+            return Err(Failure::new(code, what));
         }
         _ => {}
     }
-    let state = WarmStart::of(&problem, &done.outcome);
+    let state = WarmStart::of(&problem, &done.outcome, &done.integration);
     add_sensitivities(&mut done, &parameters);
     let (recorded, refused) = write(&done, state, optima, &directory);
     let mut unwritten = lost.or(refused);
@@ -189,16 +190,6 @@ pub(crate) fn optimise(job: &Job, course: &RunOptions) -> Result<u8, Failure> {
             Ok(NOT_REACHED)
         }
     }
-}
-
-/// The starts of several optimisations.
-fn spread(problem: &Problem, count: u32) -> Result<Vec<Vec<f64>>, Failure> {
-    multi_start::starts(problem, count as usize).map_err(|variable| {
-        Failure::bad_input(format!(
-            "found the variable \"{variable}\" without two bounds, expected \"lower\" and \
-             \"upper\" for every variable: starts are spread between them"
-        ))
-    })
 }
 
 /// Writes all results except figures: all of them, or only the record, or nothing. Also returns

@@ -2,6 +2,7 @@
 
 use super::arguments::Job;
 use super::range::Range;
+use super::starts::spread;
 use super::{
     DONE, Failure, INTERRUPTED, NOT_REACHED, interrupt, overrides, print, read_with, shown, tell,
 };
@@ -10,7 +11,6 @@ use crate::problem::{Override, Problem};
 use crate::report::optimum::Sensitivity;
 use crate::report::{Sweep, plots, prepare_directory, write_all};
 use serde_json::{Value, json};
-use std::ops::ControlFlow;
 use std::path::Path;
 
 /// A problem with one more variable: the number at a path.
@@ -125,9 +125,10 @@ fn write(found: &Sweep, directory: &Path) -> Result<(), Failure> {
     Ok(write_all(&files)?)
 }
 
-/// Optimises for each value of a parameter, each from the last optimum before. Writes the optima so
-/// far after each run, so that an interrupted sweep leaves them and the next one continues.
-pub(super) fn sweep(job: &Job, base: &Problem, range: &Range) -> Result<u8, Failure> {
+/// Optimises for each value of a parameter, each from the last optimum before and from so many `starts` of the
+/// problem, the first of which is that of the file. Writes the optima so far after each value, so that an
+/// interrupted sweep leaves them and the next one continues.
+pub(super) fn sweep(job: &Job, base: &Problem, range: &Range, starts: u32) -> Result<u8, Failure> {
     not_designed(base, "--sweep", &range.path)?;
     if job.accuracy.is_some() {
         return Err(Failure::bad_input(
@@ -162,18 +163,12 @@ pub(super) fn sweep(job: &Job, base: &Problem, range: &Range) -> Result<u8, Fail
         let all = problems.len();
         tell(&format!("continues after {known} of {all} optima\n"));
     }
-    for (value, mut problem) in range.values().zip(problems).skip(known) {
+    for (value, problem) in range.values().zip(problems).skip(known) {
         let last = found.iter().flat_map(|sweep| &sweep.optima);
-        if let Some(last) = last.rev().find(|optimum| optimum.converged) {
-            problem.restart(&last.design);
-        }
-        let mut progress = |_: &_| match interrupt::asked() {
-            true => ControlFlow::Break(()),
-            false => ControlFlow::Continue(()),
-        };
-        let Some((columns, optimum)) = driver::swept(&problem, value, &mut progress) else {
-            return Err(Failure::bad_input("nothing to optimise"));
-        };
+        let last = last.rev().find(|optimum| optimum.converged);
+        let last = last.map(|optimum| optimum.design.clone());
+        let starts = spread(&problem, starts)?;
+        let swept = driver::swept(&problem, value, (last, starts), &interrupt::asked);
         if interrupt::asked() {
             let table = directory.join(TABLE);
             tell(&match found.map_or(0, |sweep| sweep.optima.len()) {
@@ -185,10 +180,13 @@ pub(super) fn sweep(job: &Job, base: &Problem, range: &Range) -> Result<u8, Fail
             });
             return Ok(INTERRUPTED);
         }
+        let Some((columns, optimum)) = swept else {
+            return Err(Failure::bad_input("nothing to optimise"));
+        };
         if !job.quiet {
             tell(&format!(
-                "{} = {value}: {} {}\n",
-                range.path, optimum.status, optimum.objective
+                "{} = {value}: {} {}, from {}\n",
+                range.path, optimum.status, optimum.objective, optimum.start
             ));
         }
         let (objective, variables, constraints) = columns;

@@ -13,13 +13,18 @@ const MOST: f64 = 30.0;
 /// Interval at which the simulations are checked.
 const LOOK: Duration = Duration::from_millis(500);
 
-/// The progress of the simulations of this process. Long ones are reported on standard error: after
-/// 2 s, then after twice the time of the last line, at least every 30 s.
-pub(crate) fn watched() -> Arc<Progress> {
+/// The progress of the simulations of this process.
+pub(crate) fn progress() -> Arc<Progress> {
     static PROGRESS: OnceLock<Arc<Progress>> = OnceLock::new();
-    let progress = PROGRESS.get_or_init(|| {
-        let progress = Arc::new(Progress::default());
-        let seen = Arc::clone(&progress);
+    Arc::clone(PROGRESS.get_or_init(Arc::default))
+}
+
+/// Reports long simulations on standard error: after 2 s, then after twice the time of the last line, at least
+/// every 30 s.
+pub(crate) fn watch() {
+    static WATCHED: OnceLock<()> = OnceLock::new();
+    WATCHED.get_or_init(|| {
+        let seen = progress();
         // The thread ends with the process.
         std::thread::spawn(move || {
             let mut due = LONG;
@@ -37,9 +42,7 @@ pub(crate) fn watched() -> Arc<Progress> {
                 }
             }
         });
-        progress
     });
-    Arc::clone(progress)
 }
 
 fn line(view: &View) -> String {

@@ -9,6 +9,16 @@ use crate::report::{FoundOptimum, ReportError, optima_csv};
 use std::sync::Mutex;
 use std::sync::atomic::{AtomicBool, AtomicUsize, Ordering};
 
+/// The starts of several optimisations.
+pub(super) fn spread(problem: &Problem, count: u32) -> Result<Vec<Vec<f64>>, Failure> {
+    multi_start::starts(problem, count as usize).map_err(|variable| {
+        Failure::bad_input(format!(
+            "found the variable \"{variable}\" without two bounds, expected \"lower\" and \
+             \"upper\" for every variable: starts are spread between them"
+        ))
+    })
+}
+
 /// Optimisations from several starts: the best one, and the distinct optima as comma separated
 /// values. Prints a table of them. Every evaluation is written at once, to one log per start. The
 /// first failure to write ends the run and is returned with the results so far.

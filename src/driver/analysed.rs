@@ -108,6 +108,14 @@ impl Analysed {
         })
     }
 
+    /// Why function f has no derivative by the design here, if so.
+    pub(super) fn no_derivative(&self, problem: &Problem, f: usize) -> Option<String> {
+        match self {
+            Self::Motion(at) => at.no_derivative(problem, f),
+            Self::Statics(_) => None,
+        }
+    }
+
     /// The origin of a value that is not finite.
     pub(super) fn not_finite_value(&self, problem: &Problem, f: usize, value: f64) -> String {
         match self {

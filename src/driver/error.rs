@@ -68,7 +68,7 @@ pub(crate) fn estimate(
     let mut fine = Evaluated { x, scene, run };
     let numbers = |of: &Evaluated, which: &[usize]| -> Result<Vec<Vec<f64>>, IntegrationFailure> {
         let mut all: Vec<Vec<f64>> = which.iter().map(|&f| vec![of.function(f).value]).collect();
-        if gradients && !which.is_empty() {
+        if gradients && !which.is_empty() && !problem.variables.is_empty() {
             let (found, _) = of.gradients(problem, which)?;
             all.iter_mut()
                 .zip(found)

@@ -2,7 +2,7 @@
 
 use super::integration::{Integration, Refresh};
 use crate::adjoint;
-use crate::functions::rest::passes_rest;
+use crate::functions::rest::{passes_rest, vanishing};
 use crate::functions::{Scene, evaluate};
 use crate::integrate::{
     IntegrationFailure, Samples, Settings, Trajectory, WorkCounts, simulate_by,
@@ -12,6 +12,10 @@ use crate::model::RigidBody;
 use crate::model::flexible::FlexibleBody;
 use crate::problem::{Focus, Problem};
 use std::borrow::Cow;
+
+/// A norm is zero below this part of its size in the scene: to round-off, and for warnings.
+const ZERO: f64 = 64.0 * f64::EPSILON;
+const ALMOST_ZERO: f64 = 1e-6;
 
 /// A design that was simulated.
 pub(crate) struct Evaluated {
@@ -116,14 +120,35 @@ impl Evaluated {
         (written, motion.map_or(Cow::Borrowed(&self.run), Cow::Owned))
     }
 
-    /// A warning for each of the functions `which` that reduces a speed through its kink at rest.
+    /// Why function f has no derivative by the design here, if so.
+    pub(crate) fn no_derivative(&self, problem: &Problem, f: usize) -> Option<String> {
+        self.vanishes(problem, f, ZERO)
+    }
+
+    fn vanishes(&self, problem: &Problem, f: usize, part: f64) -> Option<String> {
+        let (scene, name) = (&self.scene, &problem.function_names[f]);
+        let norm = vanishing(&scene.functions[f], &scene.model, &self.run, part)?;
+        let advice = match norm {
+            "speed" => ": take \"speed_squared\"",
+            _ => "",
+        };
+        Some(format!(
+            "the {norm} of \"{name}\" is zero, where it has a kink and no derivative by the design{advice}"
+        ))
+    }
+
+    /// A warning for each of the functions `which` that reduces a speed through its kink at rest, or whose norm is
+    /// zero.
     pub(crate) fn kinks(
         &self,
         problem: &Problem,
         which: impl Iterator<Item = usize>,
     ) -> Vec<String> {
         let warn = |f: usize| {
-            let time = passes_rest(&self.scene.functions[f], &self.scene.model, &self.run)?;
+            let function = &self.scene.functions[f];
+            let Some(time) = passes_rest(function, &self.scene.model, &self.run) else {
+                return self.vanishes(problem, f, ALMOST_ZERO);
+            };
             Some(format!(
                 "the speed of \"{}\" passes zero at t = {time:.4} s, where it has a kink: take \
                  \"speed_squared\"",

@@ -1,6 +1,6 @@
 //! A problem as a nonlinear program for the optimiser.
 
-use super::analysed::{Analysed, AnalysisFailure};
+use super::analysed::Analysed;
 use super::integration::Integration;
 use super::known_evaluations::{EvaluationContext, KnownEvaluations, bits};
 use super::speculation::SpeculativeCache;
@@ -43,8 +43,9 @@ pub(crate) struct Evaluator<'a> {
     latest: Option<usize>,
     /// The steps of each evaluated design.
     pub judgements: Judgements,
-    /// Why the latest design without values has none.
+    /// Why the latest design without values has none, and that without gradients.
     pub without_values: Option<String>,
+    pub without_gradients: Option<String>,
 }
 
 impl<'a> Evaluator<'a> {
@@ -69,6 +70,7 @@ impl<'a> Evaluator<'a> {
             latest: None,
             judgements: Judgements::default(),
             without_values: None,
+            without_gradients: None,
         })
     }
 
@@ -135,13 +137,25 @@ fn asked(problem: &Problem, objective: usize) -> Vec<usize> {
     std::iter::once(objective).chain(constraints).collect()
 }
 
+/// Why there is no gradient at a design: the objective or a constraint has no derivative there. Of a constraint
+/// strictly inside its bounds any derivative will do.
+fn no_gradient(problem: &Problem, at: &Analysed, objective: usize) -> Option<String> {
+    let matters = |c: &&crate::problem::Constraint| {
+        let value = at.value(c.function);
+        value < c.lower || value >= c.upper
+    };
+    let rows = problem.constraints.iter().filter(matters);
+    let mut asked = std::iter::once(objective).chain(rows.map(|c| c.function));
+    asked.find_map(|f| at.no_derivative(problem, f))
+}
+
 /// The simulated design `x`: the last one, or a new one.
 fn at<'e>(
     (last, speculative): (&'e mut Option<Analysed>, &mut SpeculativeCache),
     (integration, account): (&mut Integration, &mut EvaluationContext),
     (problem, functions): (&Problem, &[usize]),
     x: &[f64],
-) -> Result<&'e Analysed, AnalysisFailure> {
+) -> Result<&'e Analysed, String> {
     let found = match last.take().filter(|last| last.x() == x) {
         Some(known) => Ok(known),
         None => {
@@ -161,6 +175,10 @@ fn at<'e>(
     };
     integration.settled = None;
     account.event = integration.event;
+    let found = found.map_err(|failure| {
+        account.interrupted = problem.simulation.limits.is_over();
+        failure.to_string()
+    });
     Ok(last.insert(found?))
 }
 
@@ -209,6 +227,10 @@ impl Nlp for Evaluator<'_> {
         self.problem.constraints[j].name.clone()
     }
 
+    fn is_interrupted(&self) -> bool {
+        self.problem.simulation.limits.is_over()
+    }
+
     fn evaluate(&mut self, x: &[f64]) -> Result<Evaluation, EvaluationFailure> {
         let x = unscaled(self.problem, x);
         let functions = self.functions();
@@ -220,7 +242,7 @@ impl Nlp for Evaluator<'_> {
             known = false;
             let steps = (&mut *integration, account);
             let asked = (problem, &functions[..]);
-            let at = at(made, steps, asked, &x).map_err(|failure| failure.to_string())?;
+            let at = at(made, steps, asked, &x)?;
             let mut values = Vec::with_capacity(functions.len());
             for &f in &functions {
                 let value = at.value(f);
@@ -277,9 +299,15 @@ impl Nlp for Evaluator<'_> {
             }
             let (made, steps) = ((last, speculative), (integration, &mut *account));
             let asked = (problem, &functions[..]);
-            let at = at(made, steps, asked, &x).map_err(|failure| failure.to_string())?;
+            let at = at(made, steps, asked, &x)?;
+            if let Some(why) = no_gradient(problem, at, functions[0]) {
+                return Err(why);
+            }
             let found = at.gradients(problem, &functions);
-            let (gradients, work) = found.map_err(|failure| failure.to_string())?;
+            let (gradients, work) = found.map_err(|failure| {
+                account.interrupted = problem.simulation.limits.is_over();
+                failure.to_string()
+            })?;
             account.work += work;
             for (&f, gradient) in functions.iter().zip(&gradients) {
                 if let Some(i) = gradient.iter().position(|d| !d.is_finite()) {
@@ -289,6 +317,9 @@ impl Nlp for Evaluator<'_> {
             Ok(gradients)
         });
         self.follow();
+        if let Err(reason) = &found {
+            self.without_gradients = Some(reason.clone());
+        }
         let gradients = found.map_err(|reason| self.failure(reason))?;
         let scaled = |f: usize, i: usize| gradients[f][i] * problem.variables[i].scale;
         let n = x.len();

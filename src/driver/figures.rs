@@ -6,17 +6,20 @@ use super::elastic_figures::{
     colours, deflections, displaced, elastic, has_stress, leave_out_small, limits, patches,
     stresses,
 };
-use super::optimise::Optimisation;
+use super::integration::Integration;
+use super::optimise::{Optimisation, asked};
 use super::shells;
 use super::simulate::Simulation;
 use super::statics::figures as of_structures;
 use super::traces;
+use super::warm_start::WarmStart;
 use crate::functions::evaluate::sample;
 use crate::functions::snapshot::Snapshot;
 use crate::functions::turning::turns;
 use crate::functions::{Function, Instant, Reduction};
 use crate::math::Vec3;
 use crate::problem::{Drawing, Outline, Problem, Trace};
+use crate::report::optimum::DesignValue;
 use crate::report::plots::{
     Barrier, BodyMotion, EnergyRun, Flight, History as Curves, Motion, Scenery, convergence,
     energy, histories, motion,
@@ -76,12 +79,14 @@ pub(crate) fn of_simulation(problem: &Problem, simulation: &Simulation) -> Vec<N
 }
 
 /// Figures of a recorded optimisation, from the problem and the designs in its record, which lies in `directory`.
+/// With the state of its end the motions are those of the run, on the same steps.
 ///
 /// # Errors
 /// If the record does not hold a readable problem and a value of each of its variables.
 pub(crate) fn of_record(
     optimum: &Optimum,
     history: &History,
+    state: Option<&WarmStart>,
     directory: &Path,
 ) -> Result<Vec<NamedFile>, RedrawError> {
     let text = optimum.problem.document.to_string();
@@ -91,19 +96,32 @@ pub(crate) fn of_record(
         None => PathBuf::from(&optimum.problem.file),
     };
     let file = file.display().to_string();
-    let problem = Problem::parse(&text, &file, &[]).map_err(RedrawError::Problem)?;
-    let design = problem
-        .variables
-        .iter()
-        .map(|v| {
-            let recorded = optimum.design.get(&v.name);
-            recorded
-                .map(|d| d.value)
-                .ok_or_else(|| RedrawError::Design(v.name.clone()))
-        })
-        .collect::<Result<Vec<f64>, _>>()?;
-    let start = Simulated::of(&problem, &problem.start()).ok();
-    let end = Simulated::of(&problem, &design).ok();
+    let mut problem = Problem::parse(&text, &file, &[]).map_err(RedrawError::Problem)?;
+    let recorded = |of: fn(&DesignValue) -> f64| {
+        let variables = problem.variables.iter();
+        let values = variables.map(|v| {
+            let found = optimum.design.get(&v.name).map(of);
+            found.ok_or_else(|| RedrawError::Design(v.name.clone()))
+        });
+        values.collect::<Result<Vec<f64>, _>>()
+    };
+    let (first, design) = (recorded(|d| d.start)?, recorded(|d| d.value)?);
+    if state.is_some_and(|state| state.as_written) {
+        problem.lowering = None;
+    }
+    let mut problem = problem.for_optimisation().unwrap_or(problem);
+    problem.restart(&first);
+    let start = Simulated::of(&problem, &first).ok();
+    let asked: Vec<usize> = asked(&problem).collect();
+    let mut integration = Integration::of(&problem, Some(&asked), true);
+    let kept = state.filter(|state| state.fits(&problem));
+    if let Some(kept) = kept.and_then(WarmStart::kept_steps) {
+        integration.restore(kept);
+        integration.see_whole();
+    } else {
+        integration = Integration::of(&problem, None, false);
+    }
+    let end = Simulated::with(&mut integration, &problem, &design).ok();
     let ends = [
         ("initial design", start.as_ref()),
         ("optimal design", end.as_ref()),

@@ -62,6 +62,8 @@ pub(crate) struct EvaluationContext {
     pub event: Option<f64>,
     /// After: its work.
     pub work: WorkCounts,
+    /// After: whether it failed because the run is interrupted. Then it is not recorded.
+    pub interrupted: bool,
 }
 
 /// Steps that were chosen, or used once more.
@@ -115,12 +117,7 @@ impl<'a> KnownEvaluations<'a> {
     /// Method and steps of the choice in use.
     pub(crate) fn steps(&self) -> Option<KeptSteps> {
         let Choice { steps, refreshes } = &self.choices[self.in_use?];
-        Some(KeptSteps {
-            method: Method::adaptive(&steps.method)?,
-            reason: steps.method_reason.clone(),
-            grid: steps.grid(),
-            refreshes: *refreshes,
-        })
+        kept(steps, *refreshes)
     }
 
     /// The number of the latest requested evaluation of the record, and the time of the event in
@@ -175,6 +172,9 @@ impl<'a> KnownEvaluations<'a> {
             ..EvaluationContext::default()
         };
         let found = evaluate(&mut account).and_then(finite);
+        if account.interrupted {
+            return found;
+        }
         let recorded = match &found {
             Ok(values) => Found::Values(values.clone()),
             Err(why) => Found::NoValues(why.clone()),
@@ -205,6 +205,9 @@ impl<'a> KnownEvaluations<'a> {
             ..EvaluationContext::default()
         };
         let found = evaluate(&mut account).and_then(finite);
+        if account.interrupted {
+            return found;
+        }
         let recorded = match &found {
             Ok(gradients) => Found::Gradients(gradients.clone()),
             Err(why) => Found::NoGradients(why.clone()),
@@ -274,15 +277,8 @@ impl<'a> KnownEvaluations<'a> {
             reason,
         }) = refresh
         {
-            let steps = StepsInUse {
-                method,
-                method_reason,
-                reason,
-                cells: (grid.as_ref()).map_or_else(Vec::new, |grid| grid.all_cells().to_vec()),
-                left_out: grid.as_ref().map_or_else(Vec::new, rows_left_out),
-                ends: grid.map_or_else(Vec::new, |grid| grid.ends().to_vec()),
-            };
-            self.take(design, steps);
+            let methods = (method, method_reason);
+            self.take(design, steps_in_use(methods, grid.as_ref(), reason));
         } else if let Some(k) = self.in_use.filter(left) {
             let steps = StepsInUse {
                 reason: "as before".into(),
@@ -308,6 +304,32 @@ impl<'a> KnownEvaluations<'a> {
             record(evaluation);
         }
     }
+}
+
+/// Steps as they are recorded: method and why, ends and cells, and why they were chosen.
+pub(super) fn steps_in_use(
+    (method, method_reason): (String, Option<String>),
+    grid: Option<&Grid>,
+    reason: String,
+) -> StepsInUse {
+    StepsInUse {
+        method,
+        method_reason,
+        reason,
+        cells: grid.map_or_else(Vec::new, |grid| grid.all_cells().to_vec()),
+        left_out: grid.map_or_else(Vec::new, rows_left_out),
+        ends: grid.map_or_else(Vec::new, |grid| grid.ends().to_vec()),
+    }
+}
+
+/// Recorded steps, after so many other choices.
+pub(super) fn kept(steps: &StepsInUse, refreshes: usize) -> Option<KeptSteps> {
+    Some(KeptSteps {
+        method: Method::adaptive(&steps.method)?,
+        reason: steps.method_reason.clone(),
+        grid: steps.grid(),
+        refreshes,
+    })
 }
 
 /// The redundant rows that are left out, by step.
@@ -339,6 +361,7 @@ pub(crate) fn head(problem: &Problem) -> Head {
             .collect(),
         settings,
         chained: true,
+        lowered: Some(problem.lowering.is_some()),
     }
 }
 

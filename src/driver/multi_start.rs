@@ -34,8 +34,9 @@ impl Run {
 
 /// An optimum that at least one run found.
 pub(crate) struct LocalOptimum {
-    /// The run with the best value there.
+    /// The run with the best value there, and the first run that ended there.
     pub run: usize,
+    pub first: usize,
     /// How many runs ended there.
     pub found_by: usize,
 }
@@ -137,6 +138,7 @@ pub(crate) fn distinct(problem: &Problem, runs: &[Run]) -> Vec<LocalOptimum> {
             }
             None => found.push(LocalOptimum {
                 run: k,
+                first: k,
                 found_by: 1,
             }),
         }

@@ -13,6 +13,10 @@ use crate::report::evaluations::Work;
 use crate::report::history::{Column, History, HistoryRow};
 use crate::report::optimum::Optimum;
 use std::ops::ControlFlow;
+use std::time::Duration;
+
+/// Time for the simulations of both ends after an interrupt. A result that takes longer is left out.
+const AFTER_INTERRUPT: Duration = Duration::from_millis(400);
 
 /// A finished optimisation before the simulations of its figures.
 pub(crate) struct Solved {
@@ -26,6 +30,7 @@ pub(crate) struct Solved {
     counts: Work,
     unlowered: usize,
     without_values: Option<String>,
+    without_gradients: Option<String>,
 }
 
 /// A finished optimisation.
@@ -101,6 +106,7 @@ pub(crate) fn solve<'a>(
         counts: program.counts(),
         unlowered: program.unlowered,
         without_values: program.without_values,
+        without_gradients: program.without_gradients,
         integration: program.integration,
     })
 }
@@ -132,6 +138,7 @@ impl Solved {
     /// Simulates both ends and makes the record.
     pub(crate) fn complete(self, problem: &Problem, file: &str) -> Optimisation {
         let refreshes = self.integration.refreshes;
+        problem.simulation.limits.allow(AFTER_INTERRUPT);
         // With the steps of its values.
         let mut whole = self.integration.clone();
         whole.see_whole();
@@ -170,6 +177,11 @@ impl Solved {
                 self.outcome.counts.failures
             ));
         }
+        if let Some(reason) = self.without_gradients {
+            optimum.warnings.push(format!(
+                "some designs had no gradients, the latest because: {reason}"
+            ));
+        }
         Optimisation {
             outcome: self.outcome,
             optimum,
@@ -182,7 +194,7 @@ impl Solved {
 }
 
 /// The functions of the objective and of the constraints.
-fn asked(problem: &Problem) -> impl Iterator<Item = usize> {
+pub(super) fn asked(problem: &Problem) -> impl Iterator<Item = usize> {
     let objective = problem.objective.map(|own| own.function);
     let constraints = problem.constraints.iter().map(|own| own.function);
     objective.into_iter().chain(constraints)

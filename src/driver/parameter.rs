@@ -1,14 +1,13 @@
 //! Sensitivity of the optimum to a parameter of the problem file that is not designed.
 
-use super::evaluator::{Evaluator, unscaled};
+use super::evaluator::Evaluator;
 use super::known_evaluations::KnownEvaluations;
-use super::optimise::solve;
+use super::multi_start::{best, distinct, multi_start};
 use super::record::verdict;
 use crate::optimiser::{EvaluationFailure, Nlp, Outcome};
 use crate::problem::Problem;
+use crate::report::SweptOptimum;
 use crate::report::history::Column;
-use crate::report::{History, SweptOptimum};
-use std::ops::ControlFlow;
 
 /// Derivative of the optimal objective f* by the last variable p of `problem`, at the optimum of
 /// the problem without it.
@@ -41,14 +40,35 @@ pub(crate) fn sensitivity(
 /// Objective, variables and constraints.
 type Columns = (Column, Vec<Column>, Vec<Column>);
 
-/// The optimum of `problem`, in which a parameter has the value `value`, and the names of its
-/// numbers. `None` if there is nothing to optimise.
+/// The best optimum of `problem`, in which a parameter has the value `value`, and the names of its numbers. The
+/// runs start at the optimum before, if any, and at `starts`, the first of which is that of the file. `None` if
+/// there is nothing to optimise, or `stopped` before a run began.
 pub(crate) fn swept(
     problem: &Problem,
     value: f64,
-    progress: &mut dyn FnMut(&History) -> ControlFlow<()>,
+    (last, starts): (Option<Vec<f64>>, Vec<Vec<f64>>),
+    stopped: &(dyn Fn() -> bool + Sync),
 ) -> Option<(Columns, SweptOptimum)> {
-    let solved = solve(problem, None, KnownEvaluations::default(), progress)?;
+    let warm = usize::from(last.is_some());
+    let all: Vec<Vec<f64>> = last.into_iter().chain(starts).collect();
+    let mut runs = multi_start(problem, &all, stopped, &|_, _| {
+        Some(KnownEvaluations::default())
+    });
+    let evaluations = runs
+        .iter()
+        .map(|run| run.solved.outcome.counts.evaluations)
+        .sum();
+    // A valley that others reach too is followed.
+    let optima = distinct(problem, &runs);
+    let first = optima.first().map(|optimum| optimum.first);
+    let run = runs.swap_remove(first.or_else(|| best(&runs))?);
+    let start = match run.start.checked_sub(warm) {
+        None => "the optimum before".to_owned(),
+        Some(0) => "the start of the file".to_owned(),
+        Some(k) => format!("start {}", k + 1),
+    };
+    let design = run.design();
+    let solved = run.solved;
     let objective = solved.objective();
     let (outcome, history) = (solved.outcome, solved.history);
     let optimum = SweptOptimum {
@@ -56,10 +76,11 @@ pub(crate) fn swept(
         problem: problem.hash.clone(),
         status: verdict(&outcome.status).0.to_owned(),
         converged: outcome.converged(),
-        evaluations: outcome.counts.evaluations,
+        evaluations,
         objective,
-        design: unscaled(problem, &outcome.x),
+        design,
         constraints: outcome.constraints,
+        start,
     };
     let columns = (history.objective, history.variables, history.constraints);
     Some((columns, optimum))

@@ -85,16 +85,17 @@ pub(super) fn record(
         })
         .map_err(|why| warnings.push(format!("the objective is not known at the start: {why}")))
         .ok();
-    let aggregates = |f: &usize| end.is_some_and(|end| end.maximum(*f).is_some());
-    let constrained = problem.constraints.iter().map(|c| c.function);
-    let judged: Vec<usize> = std::iter::once(objective.function)
-        .chain(constrained.filter(aggregates))
-        .collect();
+    let mut judged = vec![objective.function];
+    for constraint in &problem.constraints {
+        if !judged.contains(&constraint.function) {
+            judged.push(constraint.function);
+        }
+    }
     let estimates = match end.map(|end| end.estimate(problem, &judged, false)) {
         Some(Ok(all)) => all,
         Some(Err(failure)) => {
             warnings.push(format!(
-                "the error of the objective is not estimated: {failure}"
+                "the errors of objective and constraints are not estimated: {failure}"
             ));
             Vec::new()
         }
@@ -102,6 +103,10 @@ pub(super) fn record(
     };
     let estimate = estimates.first().map(|found| found.value);
     let aggregate = |f: usize| end.and_then(|end| end.aggregate(problem, f, &estimates));
+    let error = |f: usize| {
+        let found = estimates.iter().find(|found| found.function == f);
+        found.map(|found| found.value.error)
+    };
     let scales = problem.variables.iter().map(|v| v.scale);
     let bounds = |z: &[f64]| -> IndexMap<String, f64> {
         let names = problem.variables.iter().map(|v| v.name.clone());
@@ -128,17 +133,29 @@ pub(super) fn record(
         used.dedup();
         warnings.extend(end.warnings(problem, &used));
     }
+    let constraints = constraints(
+        problem,
+        outcome,
+        maximise,
+        start.as_ref().ok(),
+        (aggregate, error),
+    );
+    warnings.extend(
+        constraints
+            .iter()
+            .filter_map(|(name, found)| beyond_margin(problem, name, found)),
+    );
     let scaling = &outcome.scaling;
     let zero = |names: &[String], what: &str| {
-        (!names.is_empty()).then(|| format!("{what} at the start: {}", names.join(", ")))
+        (!names.is_empty()).then(|| format!("at the start {what}: {}", names.join(", ")))
     };
     warnings.extend(zero(
         &scaling.zero_rows,
-        "no variable changes these constraints",
+        "all derivatives of these constraints are zero",
     ));
     warnings.extend(zero(
         &scaling.zero_columns,
-        "nothing depends on these variables",
+        "all derivatives by these variables are zero",
     ));
     Optimum {
         status: status.to_string(),
@@ -172,7 +189,7 @@ pub(super) fn record(
                 (v.name.clone(), design)
             })
             .collect(),
-        constraints: constraints(problem, outcome, maximise, start.as_ref().ok(), aggregate),
+        constraints,
         multipliers,
         sensitivities: IndexMap::new(),
         active_bounds: active_bounds(outcome),
@@ -221,7 +238,10 @@ fn constraints(
     outcome: &Outcome,
     maximise: bool,
     start: Option<&Simulated>,
-    aggregate: impl Fn(usize) -> Option<Aggregate>,
+    (aggregate, error): (
+        impl Fn(usize) -> Option<Aggregate>,
+        impl Fn(usize) -> Option<f64>,
+    ),
 ) -> IndexMap<String, ConstraintValue> {
     let at_start = |function: usize| {
         let value = start?.value(function);
@@ -255,10 +275,39 @@ fn constraints(
                 multiplier,
                 active: active(&c.name),
                 aggregate: aggregate(c.function),
+                estimated_error: error(c.function),
             };
             (c.name.clone(), constraint)
         })
         .collect()
+}
+
+/// A warning if the error of a constraint is larger than its distance from the bounds and than what the optimiser
+/// may violate.
+fn beyond_margin(problem: &Problem, name: &str, found: &ConstraintValue) -> Option<String> {
+    let error = found.estimated_error?;
+    let given = problem.optimiser.constraint_tolerance;
+    let tolerance = given.unwrap_or(optimiser::Options::default().constraint_tolerance);
+    let below = found.lower.map(|lower| (found.value - lower, lower));
+    let above = found.upper.map(|upper| (upper - found.value, upper));
+    let all = below.into_iter().chain(above);
+    let (margin, bound) = all.min_by(|a, b| a.0.total_cmp(&b.0))?;
+    let margin = margin.max(0.0);
+    if error <= margin + tolerance * bound.abs().max(1.0) {
+        return None;
+    }
+    let unit = match found.unit.as_deref() {
+        None | Some("" | "1") => String::new(),
+        Some(unit) => format!(" {unit}"),
+    };
+    let finer = match problem.statics {
+        Some(_) => "a finer mesh",
+        None => "a smaller tolerance or more steps",
+    };
+    Some(format!(
+        "\"{name}\" may be violated: its estimated error of {error:.1e}{unit} exceeds its distance of \
+         {margin:.1e}{unit} from the bound; take {finer}"
+    ))
 }
 
 fn scaling_record(problem: &Problem, outcome: &Outcome) -> Scaling {
@@ -286,7 +335,8 @@ fn scaling_record(problem: &Problem, outcome: &Outcome) -> Scaling {
 fn active_bounds(outcome: &Outcome) -> IndexMap<String, BoundSide> {
     let side = |a: &optimiser::ActiveBound| match a.side {
         optimiser::BoundSide::Upper => BoundSide::Upper,
-        optimiser::BoundSide::Lower | optimiser::BoundSide::Equal => BoundSide::Lower,
+        optimiser::BoundSide::Lower => BoundSide::Lower,
+        optimiser::BoundSide::Equal => BoundSide::Fixed,
     };
     outcome
         .active_bounds

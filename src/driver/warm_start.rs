@@ -1,7 +1,11 @@
 //! A start from the end of another optimisation.
 
+use super::integration::{Integration, KeptSteps};
+use super::known_evaluations::{kept, steps_in_use};
+use crate::integrate::Spacing;
 use crate::optimiser::{Outcome, SavedState};
 use crate::problem::{Problem, Sense};
+use crate::report::evaluations::StepsInUse;
 use serde::{Deserialize, Serialize};
 
 /// Relative difference of a design after scaling and unscaling.
@@ -20,17 +24,41 @@ pub(crate) struct WarmStart {
     objective: Option<(String, bool)>,
     /// Point, multipliers, quasi-Newton matrix and barrier parameter.
     pub state: SavedState,
+    /// The steps in use at the end, by tolerance; older versions wrote none.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    steps: Option<StepsInUse>,
+    /// Whether the scene was integrated as written, without reductions.
+    #[serde(default)]
+    pub as_written: bool,
 }
 
 impl WarmStart {
     /// The state at the end of a run.
-    pub(crate) fn of(problem: &Problem, outcome: &Outcome) -> Option<Self> {
+    pub(crate) fn of(
+        problem: &Problem,
+        outcome: &Outcome,
+        integration: &Integration,
+    ) -> Option<Self> {
+        let steps = integration.chosen().and_then(|(settings, reason)| {
+            let Spacing::Frozen(grid) = &settings.spacing else {
+                return None;
+            };
+            let method = (settings.method.name(), Some(reason.to_owned()));
+            Some(steps_in_use(method, Some(grid), "at the end".into()))
+        });
         Some(Self {
+            steps,
+            as_written: problem.lowering.is_none(),
             variables: variables(problem),
             constraints: constraints(problem),
             objective: objective(problem),
             state: outcome.state.clone()?,
         })
+    }
+
+    /// The steps in use at the end, if they followed a tolerance.
+    pub(crate) fn kept_steps(&self) -> Option<KeptSteps> {
+        kept(self.steps.as_ref()?, 0)
     }
 
     /// Whether the state belongs to `design`, in the units of the problem file: equal up to the
@@ -121,6 +149,8 @@ mod tests {
             constraints: constraints(&lowest),
             objective: objective(&lowest),
             state: state(),
+            steps: None,
+            as_written: false,
         };
         assert!(warm.fits(&lowest));
         let x = 0.5 * lowest.variables[0].scale;

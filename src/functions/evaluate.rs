@@ -9,6 +9,7 @@ use super::snapshot::Snapshot;
 use super::turning::turns;
 use crate::integrate::{Trajectory, quadrature};
 use crate::linalg::SolveScalar;
+use crate::math::Complex64;
 use crate::math::soft_max::{Bound, SoftMax};
 use crate::model::Model;
 use crate::system::Numbering;
@@ -61,6 +62,38 @@ impl<S: SolveScalar> Function<S> {
                     maximum: None,
                     peak_sharpness: 0.0,
                 }
+            }
+        }
+    }
+}
+
+impl Function<Complex64> {
+    /// Σ |w_k Im z_k| of a reduction with the weights w_k over the values z_k of a motion: the size of the terms
+    /// whose sum is the imaginary part of the value. Zero for functions that are no such sum.
+    pub(crate) fn terms_over_motion(
+        &self,
+        model: &Model<Complex64>,
+        run: &Trajectory<Complex64>,
+    ) -> f64 {
+        let Function::Reduced { instant, reduction } = self else {
+            return 0.0;
+        };
+        let turns = turns(instant.watched_rotation(), run);
+        let sum = |weight: &dyn Fn(usize) -> f64, values: &[Complex64]| {
+            let terms = values.iter().enumerate();
+            terms.map(|(k, z)| (z.im * weight(k)).abs()).sum()
+        };
+        match *reduction {
+            Reduction::Final => 0.0,
+            Reduction::Integral => {
+                let duration = run.time(run.last()).re;
+                let weight = |k| duration * run.quadrature_weight(k);
+                sum(&weight, &sample(instant, &turns, model, run))
+            }
+            Reduction::Ks { rho, .. } | Reduction::InducedExponential { rho } => {
+                let values = sample(instant, &turns, model, run);
+                let soft = SoftMax::new(&values, |k| run.quadrature_weight(k), rho);
+                sum(&|k| soft.weights[k].re, &values)
             }
         }
     }

@@ -1,15 +1,56 @@
-//! Zeros of the speed of a point. The speed has a kink there, |v| ~ |t − t0|.
+//! Zeros of norms: of the speed of a point and of the length of a spring. They have kinks there, in time as
+//! |v| ~ |t − t0|, and in the design.
 
+use super::evaluate::sample;
 use super::function::{Function, Reduction};
 use super::instant::Instant;
 use super::snapshot::Snapshot;
 use crate::integrate::Trajectory;
 use crate::math::Vec3;
 use crate::model::Model;
+use crate::system::loads::springs::{Spring, SpringPart};
+use crate::system::placement::length_scale;
 
 /// Smallest speed, relative to the change of velocity between two samples, that the samples
 /// distinguish from a kink.
 const CLOSE: f64 = 0.05;
+
+/// The norm on which `function` depends, by name, if it is zero wherever the function looks: at the end, or over
+/// the whole run. The function has no derivative by the design then. `part` is the largest zero, relative to
+/// the size of the scene and the duration.
+pub(crate) fn vanishing(
+    function: &Function<f64>,
+    model: &Model<f64>,
+    run: &Trajectory<f64>,
+    part: f64,
+) -> Option<&'static str> {
+    let Function::Reduced { instant, reduction } = function else {
+        return None;
+    };
+    let length = length_scale(model);
+    let (norm, name, size) = match instant {
+        Instant::Speed { .. } => (instant.clone(), "speed", length / run.duration),
+        Instant::Spring(Spring {
+            load,
+            part: SpringPart::Length | SpringPart::Tension,
+        }) => {
+            let (load, part) = (*load, SpringPart::Length);
+            (
+                Instant::Spring(Spring { load, part }),
+                "length of the spring",
+                length,
+            )
+        }
+        _ => return None,
+    };
+    let values = sample(&norm, &None, model, run);
+    let first = match reduction {
+        Reduction::Final => run.last(),
+        Reduction::Integral | Reduction::Ks { .. } | Reduction::InducedExponential { .. } => 0,
+    };
+    let zero = |value: &f64| value.abs() <= part * size;
+    values[first..].iter().all(zero).then_some(name)
+}
 
 /// The first time \[s\] at which a speed that `function` reduces over the run vanishes, if this
 /// affects its value. Start and end of a run do not count: the speed is smooth up to them.

@@ -181,6 +181,10 @@ impl Controller {
         self.headway.try_one();
         let (tries, rejected) = self.headway.so_far();
         let clock = self.clock.as_ref();
+        if clock.is_some_and(Clock::is_over) {
+            self.stopped = Some(Stop::Interrupted);
+            return None;
+        }
         if let Some(seconds) = clock.and_then(|c| c.look(reached, tries, rejected)) {
             self.stopped = Some(Stop::TimeLimit(seconds));
             return None;

@@ -152,6 +152,9 @@ pub(crate) enum IntegrationFailure {
         /// Time by which they advanced the motion \[s\].
         advance: f64,
     },
+    /// All simulations must end.
+    #[error("the simulation was interrupted")]
+    Interrupted,
     /// The simulation exceeded its time limit.
     #[error(
         "the simulation exceeds its time limit of {seconds} s at t = {time:.6e} s of {duration} s \

@@ -36,6 +36,8 @@ pub(crate) enum Stop {
     },
     /// The time limit \[s\] was exceeded.
     TimeLimit(f64),
+    /// All simulations must end.
+    Interrupted,
 }
 
 /// Number of unknowns of the accelerations: velocities and multipliers.

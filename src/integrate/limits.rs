@@ -1,8 +1,8 @@
 //! Limits of a simulation, and its progress for observers.
 
-use std::sync::atomic::{AtomicU64, Ordering::Relaxed};
+use std::sync::atomic::{AtomicBool, AtomicU64, Ordering::Relaxed};
 use std::sync::{Arc, Mutex};
-use std::time::Instant;
+use std::time::{Duration, Instant};
 
 /// Limits of a simulation, and the observer of its progress. The number of steps is limited, too
 /// (see [`Headway`](super::headway::Headway)).
@@ -14,6 +14,22 @@ pub(crate) struct Limits {
     pub progress: Option<Arc<Progress>>,
 }
 
+impl Limits {
+    /// Whether simulations must end now.
+    pub(crate) fn is_over(&self) -> bool {
+        (self.progress.as_ref()).is_some_and(|progress| progress.is_over())
+    }
+
+    /// If simulations must end, allows them so much time more, for the results.
+    pub(crate) fn allow(&self, time: Duration) {
+        if let Some(progress) = &self.progress
+            && progress.is_over()
+        {
+            progress.end_by(Instant::now() + time);
+        }
+    }
+}
+
 /// Limits are equal if they allow the same. The observer does not matter.
 impl PartialEq for Limits {
     fn eq(&self, other: &Self) -> bool {
@@ -21,10 +37,13 @@ impl PartialEq for Limits {
     }
 }
 
-/// The running simulations, on any number of threads.
+/// The running simulations, on any number of threads, and when they must end.
 #[derive(Debug, Default)]
 pub(crate) struct Progress {
     running: Mutex<Vec<Arc<Run>>>,
+    /// Whether there is a deadline. It is read at every step, so without the lock.
+    ends: AtomicBool,
+    deadline: Mutex<Option<Instant>>,
 }
 
 /// One running simulation. The march writes its counters, observers read them.
@@ -54,6 +73,21 @@ pub(crate) struct View {
 }
 
 impl Progress {
+    /// Makes all simulations fail from `deadline` on, as interrupted.
+    pub(crate) fn end_by(&self, deadline: Instant) {
+        if let Ok(mut own) = self.deadline.lock() {
+            *own = Some(deadline);
+        }
+        self.ends.store(true, Relaxed);
+    }
+
+    /// Whether simulations must end now.
+    pub(crate) fn is_over(&self) -> bool {
+        let passed = |deadline: &Instant| Instant::now() >= *deadline;
+        self.ends.load(Relaxed)
+            && (self.deadline.lock()).is_ok_and(|own| own.as_ref().is_some_and(passed))
+    }
+
     /// The simulation that has been running longest, if any.
     pub(crate) fn longest(&self) -> Option<View> {
         let running = self.running.lock().ok()?;
@@ -107,6 +141,13 @@ impl Clock {
         })
     }
 
+    /// Whether the march must end now.
+    pub(crate) fn is_over(&self) -> bool {
+        self.told
+            .as_ref()
+            .is_some_and(|(progress, _)| progress.is_over())
+    }
+
     /// Reports the progress of the march; returns the limit [s] if it is exceeded.
     pub(crate) fn look(&self, reached: f64, tries: usize, rejected: usize) -> Option<f64> {
         if !tries.is_multiple_of(LOOKS) {
@@ -135,6 +176,25 @@ impl Drop for Clock {
 #[cfg(test)]
 mod tests {
     use super::*;
+
+    /// From the deadline on, and not before, simulations must end.
+    #[test]
+    fn a_deadline_ends_simulations() {
+        let limits = Limits {
+            seconds: None,
+            progress: Some(Arc::default()),
+        };
+        let clock = Clock::start(&limits, 1.0).expect("a clock");
+        assert!(!limits.is_over() && !clock.is_over());
+        limits.allow(Duration::ZERO);
+        assert!(!limits.is_over(), "nothing was to end");
+        let progress = limits.progress.clone().expect("it was given");
+        progress.end_by(Instant::now());
+        assert!(limits.is_over() && clock.is_over());
+        limits.allow(Duration::from_secs(1000));
+        assert!(!limits.is_over() && !clock.is_over());
+        assert!(!Limits::default().is_over());
+    }
 
     /// The simulation that began first is reported while it runs.
     #[test]

@@ -77,6 +77,7 @@ fn simulate_watching<S: SolveScalar>(
             implicit::march::march(model, &numbering, duration, settings, start)?
         }
     };
+    run.limits = settings.limits.clone();
     run.counts.factorisations += saddle.factorisations;
     run.counts.solves += saddle.factorisations;
     Ok(run)
@@ -98,6 +99,7 @@ fn close<S: SolveScalar>(
                 in_a_row,
             });
         }
+        Some(Stop::Interrupted) => return Err(IntegrationFailure::Interrupted),
         Some(Stop::TimeLimit(seconds)) => {
             return Err(IntegrationFailure::TimeLimit {
                 seconds,

@@ -1,6 +1,7 @@
 //! The result of a run.
 
 use super::grid::{Grid, SamplePlace};
+use super::limits::Limits;
 use super::quadrature::Samples;
 use super::quadrature::{Due, Step};
 use super::rows::real;
@@ -53,6 +54,8 @@ pub(crate) struct Trajectory<S: Scalar> {
     pub tape: Tape<S>,
     /// Work spent.
     pub counts: WorkCounts,
+    /// Limits of the simulation, which gradients heed too.
+    pub limits: Limits,
 }
 
 /// Data for the adjoint, by family of methods.
@@ -92,6 +95,7 @@ impl<S: Scalar> Trajectory<S> {
             step_error: 0.0,
             tape,
             counts: WorkCounts::default(),
+            limits: Limits::default(),
         }
     }
 
@@ -221,6 +225,7 @@ impl Trajectory<f64> {
             step_error: self.step_error,
             tape: Tape::Explicit(explicit::Tape::none(&numbering)),
             counts: self.counts,
+            limits: self.limits.clone(),
             numbering,
         }
     }
@@ -260,6 +265,7 @@ impl Trajectory<Complex64> {
                 Tape::Implicit(tape) => Tape::Implicit(tape.with(tape.block.real())),
             },
             counts: self.counts,
+            limits: self.limits.clone(),
         }
     }
 }

@@ -189,12 +189,17 @@ pub(crate) fn best_of(program: &mut Program<'_>, finish: FinalIterate) -> FinalI
     let Some(point) = found else {
         return finish;
     };
-    let Ok(slopes) = program.gradients(&point.x) else {
-        // Its values count, but nothing is known of its residuals.
-        let mut finish = FinalIterate { point, ..finish };
-        finish.slopes.g.fill(f64::NAN);
-        finish.scaled = f64::NAN;
-        return finish;
+    let slopes = match program.gradients(&point.x) {
+        Ok(slopes) => slopes,
+        // Interrupted: the iterate with its residuals is a result as well.
+        Err(EarlyExit::Halt(_)) => return finish,
+        Err(EarlyExit::Failed(_)) => {
+            // Its values count, but nothing is known of its residuals.
+            let mut finish = FinalIterate { point, ..finish };
+            finish.slopes.g.fill(f64::NAN);
+            finish.scaled = f64::NAN;
+            return finish;
+        }
     };
     let y = &finish.multipliers.y;
     let multipliers = ScaledMultipliers::polished(program, &point, &slopes, y);

@@ -35,6 +35,7 @@ impl Program<'_> {
         {
             result = Err(fault);
         }
+        self.unless_interrupted(result.is_err())?;
         let Evaluation {
             objective,
             constraints,
@@ -76,6 +77,7 @@ impl Program<'_> {
         {
             result = Err(fault);
         }
+        self.unless_interrupted(result.is_err())?;
         let Gradients {
             objective,
             jacobian,
@@ -135,6 +137,14 @@ impl Program<'_> {
             self.gradient_norms.push(norm);
         }
         Ok(slopes)
+    }
+
+    /// Ends the run if an evaluation `failed` because it was interrupted.
+    fn unless_interrupted(&self, failed: bool) -> Result<(), EarlyExit> {
+        match failed && self.nlp.is_interrupted() {
+            true => Err(EarlyExit::Halt(Status::Interrupted)),
+            false => Ok(()),
+        }
     }
 
     fn record(&mut self, x: Vec<f64>, failure: EvaluationFailure) -> EarlyExit {

@@ -43,6 +43,11 @@ pub trait Nlp {
         1.0
     }
 
+    /// Whether the run must end: an evaluation that has just failed says nothing of its point then.
+    fn is_interrupted(&self) -> bool {
+        false
+    }
+
     /// Objective and constraints at `x`.
     ///
     /// # Errors

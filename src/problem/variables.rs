@@ -134,7 +134,8 @@ impl<'a> Checker<'a> {
         // Wide bounds do not indicate a typical change.
         let most = WIDE * start.abs().max(1.0);
         let scale = match 0.5 * (upper - lower) {
-            half if half.is_finite() => half.min(most),
+            half if half.is_finite() && half > 0.0 => half.min(most),
+            // Open or fixed.
             _ if start != 0.0 => start.abs(),
             _ => 1.0,
         };
@@ -225,10 +226,10 @@ impl<'a> Checker<'a> {
         let unit = unit_suffix(&number.unit);
         let (lower, upper) = (join(pointer, "lower"), join(pointer, "upper"));
         if let (Some(low), Some(high)) = (written.lower, written.upper)
-            && low >= high
+            && low > high
         {
             let found = format!("the bounds {low} and {high}");
-            let expected = "a lower bound below the upper one";
+            let expected = "a lower bound below the upper one, or equal bounds to fix the variable";
             self.fault(Finding::new(&upper, found, expected));
             return;
         }

@@ -13,7 +13,8 @@ pub(crate) struct GradientCertificate {
     pub seed: u64,
     /// The direction d: the change of each variable, in its unit.
     pub direction: IndexMap<String, f64>,
-    /// Largest accepted difference, relative to Σᵢ |dᵢ ∂f/∂xᵢ|.
+    /// Largest accepted difference, relative to Σᵢ |dᵢ ∂f/∂xᵢ|: the larger of those at this design and at the start,
+    /// and of a sum over the motion that of its terms.
     pub tolerance: f64,
     /// Whether every derivative passed at both designs.
     pub passed: bool,
@@ -60,7 +61,7 @@ pub(crate) struct CertifiedDerivative {
     /// By the complex step.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub complex_step: Option<f64>,
-    /// Their difference, relative to Σᵢ |dᵢ ∂f/∂xᵢ|. A difference above the tolerance passes if it
+    /// Their difference, relative to that of `tolerance`. A difference above the tolerance passes if it
     /// is round-off of the terms of the derivatives.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub difference: Option<f64>,

@@ -75,6 +75,8 @@ pub(crate) enum BoundSide {
     Lower,
     /// The upper bound.
     Upper,
+    /// Both: equal bounds fix the variable.
+    Fixed,
 }
 
 /// Which bounds of a constraint are active.
@@ -173,6 +175,9 @@ pub(crate) struct ConstraintValue {
     /// The aggregated quantity, if it is an aggregate.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub aggregate: Option<Aggregate>,
+    /// Estimated error of `value` by the discretisation, absolute; older records have none.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub estimated_error: Option<f64>,
 }
 
 /// A smooth aggregate and the largest value over time, or over a structure.

@@ -169,6 +169,7 @@ fn design(optimum: &Optimum) -> String {
                 match optimum.active_bounds.get(name) {
                     Some(BoundSide::Lower) => "at its lower bound".to_owned(),
                     Some(BoundSide::Upper) => "at its upper bound".to_owned(),
+                    Some(BoundSide::Fixed) => "fixed".to_owned(),
                     None => String::new(),
                 },
             ]
@@ -203,6 +204,11 @@ fn constraints(optimum: &Optimum) -> String {
                 } else {
                     String::new()
                 },
+                match constraint.estimated_error {
+                    None => String::new(),
+                    Some(error) if is_rounding(error, constraint.value) => "rounding".to_owned(),
+                    Some(error) => significant(error, 2),
+                },
             ]
         })
         .collect();
@@ -214,6 +220,7 @@ fn constraints(optimum: &Optimum) -> String {
             "bounds",
             "active",
             "sensitivity",
+            ">est. error",
         ],
         &rows,
     )

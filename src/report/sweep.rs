@@ -16,7 +16,7 @@ pub(crate) struct SweptOptimum {
     pub status: String,
     /// Whether it converged.
     pub converged: bool,
-    /// Simulations.
+    /// Simulations of all runs for this value.
     pub evaluations: usize,
     /// Objective in the user's sense.
     pub objective: f64,
@@ -24,6 +24,9 @@ pub(crate) struct SweptOptimum {
     pub design: Vec<f64>,
     /// Values of the constraints.
     pub constraints: Vec<f64>,
+    /// The start of the run that found it, in words.
+    #[serde(default)]
+    pub start: String,
 }
 
 /// The optima along a parameter.
@@ -71,6 +74,7 @@ impl Sweep {
         for constraint in &self.constraints {
             header.push(constraint.heading(CONSTRAINT)?);
         }
+        header.push("from".into());
         let mut text = String::new();
         csv::write_record(&mut text, header.iter().map(String::as_str));
         for found in &self.optima {
@@ -84,6 +88,7 @@ impl Sweep {
                     .chain(&found.constraints)
                     .map(|&x| exact(x)),
             );
+            fields.push(found.start.clone());
             csv::write_record(&mut text, fields.iter().map(String::as_str));
         }
         Ok(text)
@@ -93,13 +98,13 @@ impl Sweep {
     pub(crate) fn text(&self) -> String {
         let unit = self.objective.unit.as_deref().unwrap_or_default();
         let mut text = format!(
-            "{:>14} {:>18} {unit:8} evaluations status\n",
+            "{:>14} {:>18} {unit:8} evaluations status, from\n",
             "value", "objective"
         );
         for found in &self.optima {
             text += &format!(
-                "{:>14} {:>18.9e} {unit:8} {:>11} {}\n",
-                found.value, found.objective, found.evaluations, found.status
+                "{:>14} {:>18.9e} {unit:8} {:>11} {}, {}\n",
+                found.value, found.objective, found.evaluations, found.status, found.start
             );
         }
         format!("Optima for {}\n{text}", self.parameter)

@@ -12,4 +12,5 @@ mod results_are_kept;
 mod several_starts;
 mod stability;
 mod statics;
+mod verdicts;
 mod work_precision;

@@ -89,6 +89,7 @@ fn optimum() -> Optimum {
                 multiplier: -3.5014,
                 active: Activity::Lower,
                 aggregate: None,
+                estimated_error: None,
             },
         )]
         .into(),
@@ -381,8 +382,9 @@ fn multipliers_are_sensitivities_with_their_signs() {
         let text = summary(&optimum);
         let row = text.lines().find(|line| line.contains(" per "));
         let told = row
-            .and_then(|row| row.rsplit("  ").next())
-            .unwrap_or_default();
+            .and_then(|row| row.split("  ").find(|cell| cell.contains(" per ")))
+            .unwrap_or_default()
+            .trim();
         let told: f64 = told
             .split(' ')
             .next()
@@ -413,6 +415,7 @@ fn multipliers_are_sensitivities_with_their_signs() {
         let (force, other) = match side {
             BoundSide::Lower => (lower, upper),
             BoundSide::Upper => (upper, lower),
+            BoundSide::Fixed => unreachable!("the bounds differ"),
         };
         assert!(
             (force - expected).abs() < 1e-4 * expected,
@@ -432,6 +435,95 @@ fn an_optimum_agrees_with_itself() {
         comparison.text(),
         format!("same optimum: {count} quantities within tolerance\n")
     );
+}
+
+/// Runs without an optimum, other units, bounds, multipliers of bounds, and gradients that were not confirmed.
+#[test]
+fn what_is_no_optimum_or_another_problem_is_a_difference() {
+    type Change = fn(&mut Optimum);
+    let cases: [(Change, &[(&str, &str)]); 9] = [
+        (|o| o.status = "iteration_limit".into(), &[("status", "")]),
+        (|o| o.status = "infeasible".into(), &[("status", "")]),
+        (
+            |o| o.objective.unit = Some("km".into()),
+            &[("unit", "range")],
+        ),
+        (|o| o.design[0].unit = None, &[("unit", "counterweight")]),
+        (
+            |o| o.design[1].upper = Some(0.6),
+            &[("upper bound", "angle")],
+        ),
+        (|o| o.design[1].lower = None, &[("lower bound", "angle")]),
+        (
+            |o| o.constraints[0].lower = Some(1e-3),
+            &[("lower bound", "clear the barrier")],
+        ),
+        (
+            |o| o.multipliers.upper_bounds[0] *= 1.01,
+            &[("multiplier", "upper bound of counterweight")],
+        ),
+        (
+            |o| o.gradient_certificate = certificate(false),
+            &[("gradients", "certificate")],
+        ),
+    ];
+    for (change, expected) in cases {
+        let mut new = optimum();
+        change(&mut new);
+        for (a, b) in [(&new, &optimum()), (&optimum(), &new)] {
+            let comparison = compare(a, b, &Tolerances::default());
+            assert_eq!(moved(&comparison), expected);
+        }
+    }
+    // Both at their limit.
+    let mut limited = optimum();
+    limited.status = "iteration_limit".into();
+    let text = compare(&limited, &limited, &Tolerances::default()).text();
+    let told =
+        "no two optima: the new run ended as iteration_limit, the baseline as iteration_limit";
+    assert!(text.starts_with(told), "{text}");
+    // A certificate that only one of them has is noted.
+    let mut certified = optimum();
+    certified.gradient_certificate = certificate(true);
+    let comparison = compare(&certified, &optimum(), &Tolerances::default());
+    assert!(comparison.passed() && comparison.text().contains("note  gradients"));
+}
+
+fn certificate(passed: bool) -> Option<GradientCertificate> {
+    Some(GradientCertificate {
+        seed: 1,
+        direction: Default::default(),
+        tolerance: 1e-10,
+        passed,
+        start: Default::default(),
+        optimum: Default::default(),
+        cost: Default::default(),
+    })
+}
+
+/// An objective that falls to zero is compared beside its start, not beside its last digits: 1e-6 of 1e-6 of it.
+#[test]
+fn objectives_of_zero_are_compared_by_their_own_scale() {
+    for start in [1e-9, 1.0, 1e9] {
+        let with = |value: f64| {
+            let mut own = optimum();
+            own.start_objective = Some(start);
+            own.objective.value = value * start;
+            own.objective.true_maximum = None;
+            own.constraints[0].multiplier = 0.0;
+            own.multipliers.upper_bounds[0] = 0.0;
+            own
+        };
+        let same = |a: f64, b: f64| compare(&with(a), &with(b), &Tolerances::default()).passed();
+        assert!(
+            same(2e-15, 2e-20) && same(2e-20, 2e-15) && same(0.0, -1e-13),
+            "{start}"
+        );
+        assert!(
+            !same(2e-12, 0.0) && !same(0.0, 2e-12) && !same(1.0, 1.0 + 2e-6),
+            "{start}"
+        );
+    }
 }
 
 #[test]

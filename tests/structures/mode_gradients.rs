@@ -196,7 +196,7 @@ fn the_aggregate_of_a_cluster_has_exact_derivatives() {
             let failure = frequency_gradient(&problem, &structure, &found.modes, 1).err();
             assert!(matches!(
                 failure,
-                Some(ModalFailure::Repeated { index: 1, .. })
+                Some(ModalFailure::Repeated { mode: 2, .. })
             ));
         }
         assert!(found.value <= f[0]);

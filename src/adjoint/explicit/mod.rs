@@ -48,6 +48,9 @@ pub(super) fn gradients(
     let mut sample = run.last();
     let mut counts = WorkCounts::default();
     for n in (1..=run.grid.steps()).rev() {
+        if run.limits.is_over() {
+            return Err(IntegrationFailure::Interrupted);
+        }
         let h = run.duration * run.grid.width(n);
         let (begin, end) = (run.grid.ends()[n - 1], run.grid.ends()[n]);
         let first = first_sample(run, n, sample);

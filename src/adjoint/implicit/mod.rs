@@ -67,6 +67,9 @@ pub(super) fn gradients(
     let mut sample = run.last();
     let [mut step, mut before] = [0, 1].map(|_| Step::new(numbering, stages));
     for k in (1..=run.grid.steps()).rev() {
+        if run.limits.is_over() {
+            return Err(IntegrationFailure::Interrupted);
+        }
         if before.number == k {
             std::mem::swap(&mut step, &mut before);
         } else {

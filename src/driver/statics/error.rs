@@ -33,7 +33,7 @@ pub(crate) fn estimate(
     admit(at, available_memory())?;
     let fine = refined(problem, &at.x, 2 * at.statics.cuts, which)?;
     let slopes = |of: &StaticDesign| -> Result<Vec<Vec<f64>>, StaticsFailure> {
-        if !gradients {
+        if !gradients || problem.variables.is_empty() {
             return Ok(vec![Vec::new(); which.len()]);
         }
         let (found, _) = of.derivatives(problem, which)?;

@@ -283,7 +283,12 @@ impl StaticDesign {
         if let Some(highest) = highest {
             let structure = self.scene.structure.clone();
             let modal = of_modes(self.workspace(), &statics, &structure)?;
-            let found = modal.solve(&structure, highest + 2)?;
+            // A derivative needs the next mode too, if there is one.
+            let found = modal.solve_at_most(&structure, highest + 2)?;
+            let (asked, there) = (highest + 1, found.eigenvalues.len());
+            if there < asked {
+                return Err(ModalFailure::TooMany { asked, there }.into());
+            }
             self.counts.factorisations += found.work.factorisations;
             self.counts.solves += found.work.solves;
             self.modes = Some(found);

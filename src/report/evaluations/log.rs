@@ -58,6 +58,9 @@ impl Earlier {
                 "those of this one; give the same file, --set and --from, or leave --resume out",
             ));
         }
+        if let Some((found, expected)) = head.other_form(&written) {
+            return Err(fault(1, found.into(), expected));
+        }
         let (mut records, mut complete) = (Vec::new(), 0);
         // The lines of older versions have no hash.
         let mut chain = match written.chained {
@@ -198,6 +201,7 @@ mod tests {
             functions: vec!["range".into()],
             settings: settings.as_object().expect("an object").clone(),
             chained: true,
+            lowered: None,
         }
     }
 

@@ -32,6 +32,9 @@ pub(crate) struct Head {
     /// wrote none.
     #[serde(default, skip_serializing_if = "is_false")]
     pub chained: bool,
+    /// Whether the scene was reduced before it was integrated; older versions wrote nothing.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub lowered: Option<bool>,
 }
 
 fn is_false(yes: &bool) -> bool {
@@ -41,7 +44,28 @@ fn is_false(yes: &bool) -> bool {
 impl Head {
     /// Whether evaluations of `other` are valid for this.
     fn fits(&self, other: &Head) -> bool {
-        self.without_settings() == other.without_settings()
+        let lowered = other.lowered;
+        let with = |head: &Head| Head {
+            lowered,
+            ..head.without_settings()
+        };
+        with(self) == with(other)
+    }
+
+    /// What `--no-lowering` says of the evaluations of `other`, if they are those of the scene in another form:
+    /// found and expected.
+    fn other_form(&self, other: &Head) -> Option<(&'static str, &'static str)> {
+        match (self.lowered?, other.lowered?) {
+            (true, false) => Some((
+                "evaluations of the scene as written",
+                "those of the reduced scene; give --no-lowering, or leave --resume out",
+            )),
+            (false, true) => Some((
+                "evaluations of the reduced scene",
+                "those of the scene as written; leave --no-lowering out, or leave --resume out",
+            )),
+            _ => None,
+        }
     }
 
     /// The parts of the document that determine the evaluations.

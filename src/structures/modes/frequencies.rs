@@ -66,8 +66,8 @@ pub fn eigenvalue_gradient(
 /// The gradient of one frequency \[Hz\] by the structure.
 ///
 /// # Errors
-/// [`ModalFailure::Repeated`] if it equals its neighbour, [`ModalFailure::TooMany`] if `modes` has not
-/// both neighbours.
+/// [`ModalFailure::Repeated`] if it equals its neighbour, [`ModalFailure::TooMany`] if `modes` lacks a
+/// neighbour that there is.
 pub fn frequency_gradient(
     problem: &ModalProblem,
     structure: &Structure<f64>,
@@ -75,7 +75,7 @@ pub fn frequency_gradient(
     index: usize,
 ) -> Result<Structure<f64>, ModalFailure> {
     let there = modes.eigenvalues.len();
-    if index + 1 >= there {
+    if index >= there || (index + 1 == there && !modes.all) {
         return Err(ModalFailure::TooMany {
             asked: index + 2,
             there,
@@ -83,14 +83,11 @@ pub fn frequency_gradient(
     }
     let lambda = &modes.eigenvalues;
     let near = |a: usize, b: usize| (lambda[b] - lambda[a]) / lambda[b];
-    let below = if index > 0 {
-        near(index - 1, index)
-    } else {
-        1.0
-    };
-    let gap = below.min(near(index, index + 1));
+    let neighbours = index.saturating_sub(1)..(index + 1).min(there - 1);
+    let gap = neighbours.map(|k| near(k, k + 1)).fold(1.0, f64::min);
     if gap < REPEATED {
-        return Err(ModalFailure::Repeated { index, gap });
+        let mode = index + 1;
+        return Err(ModalFailure::Repeated { mode, gap });
     }
     let mut weights = vec![0.0; there];
     weights[index] = frequency_slope(lambda[index]);
@@ -147,15 +144,10 @@ pub fn lowest_frequency(
 ) -> Result<LowestFrequency, ModalFailure> {
     let mut count = 6;
     let modes = loop {
-        let (modes, all) = match problem.solve(structure, count) {
-            Err(ModalFailure::TooMany { there, .. }) if there > 0 => {
-                (problem.solve(structure, there)?, true)
-            }
-            other => (other?, false),
-        };
+        let modes = problem.solve_at_most(structure, count)?;
         let f = modes.frequencies();
         let reach = f.last().map_or(0.0, |last| rho * (last - f[0]));
-        if all || reach > NEGLIGIBLE {
+        if modes.all || reach > NEGLIGIBLE {
             break modes;
         }
         if f.len() >= MOST_MODES {

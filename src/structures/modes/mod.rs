@@ -51,12 +51,12 @@ pub enum ModalFailure {
     },
     /// A single frequency is requested that equals another one.
     #[error(
-        "frequency {index} has no derivative: it lies within {gap:.1e} of its neighbour, relatively; take \
+        "frequency {mode} has no derivative: it lies within {gap:.1e} of its neighbour, relatively; take \
          a smooth function of the lowest frequencies"
     )]
     Repeated {
-        /// The mode.
-        index: usize,
+        /// Its number, from 1.
+        mode: usize,
         /// Relative distance of the eigenvalues.
         gap: f64,
     },
@@ -90,6 +90,8 @@ pub struct Modes {
     pub eigenvalues: Vec<f64>,
     /// Values of the unknowns in each mode; xᵀ M x = 1.
     pub vectors: Vec<Vec<f64>>,
+    /// Whether these are all modes that there are.
+    pub all: bool,
     /// Work of the solution.
     pub work: ModalWork,
 }
@@ -155,6 +157,21 @@ impl ModalProblem {
                 ModalFailure::NoConvergence { asked, found }
             }
         })
+    }
+
+    /// As [`ModalProblem::solve`], with all modes if there are fewer.
+    ///
+    /// # Errors
+    /// [`ModalFailure`] as there.
+    pub fn solve_at_most(
+        &mut self,
+        structure: &Structure<f64>,
+        count: usize,
+    ) -> Result<Modes, ModalFailure> {
+        match self.solve(structure, count) {
+            Err(ModalFailure::TooMany { there, .. }) if there > 0 => self.solve(structure, there),
+            other => other,
+        }
     }
 
     /// Number of unknowns.

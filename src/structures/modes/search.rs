@@ -157,6 +157,7 @@ impl Pencil {
                     rigid,
                     eigenvalues: values[..whole].to_vec(),
                     vectors,
+                    all: exhausted && whole == values.len(),
                     work,
                 });
             }
