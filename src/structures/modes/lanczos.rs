@@ -207,6 +207,9 @@ pub(crate) fn largest(
 
 /// Eigenvalues, the largest first, and vectors of the leading part of H.
 fn ritz(h: &DMatrix<f64>, order: usize) -> (Vec<f64>, DMatrix<f64>) {
+    if order == 0 {
+        return (Vec::new(), DMatrix::zeros(0, 0));
+    }
     let part = h.view((0, 0), (order, order)).into_owned();
     let eigen = SymmetricEigen::new(part);
     let mut by_size: Vec<usize> = (0..order).collect();
@@ -216,12 +219,7 @@ fn ritz(h: &DMatrix<f64>, order: usize) -> (Vec<f64>, DMatrix<f64>) {
         .iter()
         .map(|&k| eigen.eigenvectors.column(k))
         .collect();
-    let vectors = if order == 0 {
-        DMatrix::zeros(0, 0)
-    } else {
-        DMatrix::from_columns(&columns)
-    };
-    (values, vectors)
+    (values, DMatrix::from_columns(&columns))
 }
 
 /// Keeps the best Ritz vectors and the newest block; returns the place of that block.
