@@ -127,6 +127,9 @@ pub(super) fn record(
         used.sort_unstable();
         used.dedup();
         warnings.extend(end.warnings(problem, &used));
+        if let Ok(start) = start {
+            warnings.extend(start.far(problem, &used, "at the start"));
+        }
     }
     let scaling = &outcome.scaling;
     let zero = |names: &[String], what: &str| {
@@ -154,6 +157,7 @@ pub(super) fn record(
             unit: Some(problem.function_unit(objective.function)),
             true_maximum: end.and_then(|end| end.maximum(objective.function)),
             aggregate: aggregate(objective.function),
+            true_value: end.and_then(|end| end.true_value(objective.function)),
             estimated_error: estimate.map(|e| e.error),
         },
         start_objective,
@@ -172,7 +176,13 @@ pub(super) fn record(
                 (v.name.clone(), design)
             })
             .collect(),
-        constraints: constraints(problem, outcome, maximise, start.as_ref().ok(), aggregate),
+        constraints: constraints(
+            problem,
+            outcome,
+            maximise,
+            (start.as_ref().ok(), end),
+            aggregate,
+        ),
         multipliers,
         sensitivities: IndexMap::new(),
         active_bounds: active_bounds(outcome),
@@ -220,7 +230,7 @@ fn constraints(
     problem: &Problem,
     outcome: &Outcome,
     maximise: bool,
-    start: Option<&Simulated>,
+    (start, end): (Option<&Simulated>, Option<&Simulated>),
     aggregate: impl Fn(usize) -> Option<Aggregate>,
 ) -> IndexMap<String, ConstraintValue> {
     let at_start = |function: usize| {
@@ -255,6 +265,7 @@ fn constraints(
                 multiplier,
                 active: active(&c.name),
                 aggregate: aggregate(c.function),
+                true_value: end.and_then(|end| end.true_value(c.function)),
             };
             (c.name.clone(), constraint)
         })

@@ -27,6 +27,7 @@ mod report_records;
 mod second_order;
 mod shell_hinges;
 mod shell_pictures;
+mod smoothed;
 mod stability;
 mod static_faults;
 mod statics;

@@ -64,6 +64,7 @@ fn optimum() -> Optimum {
             unit: Some("m".into()),
             true_maximum: Some(867.7),
             aggregate: None,
+            true_value: None,
             estimated_error: Some(0.003),
         },
         start_objective: Some(546.507),
@@ -89,6 +90,7 @@ fn optimum() -> Optimum {
                 multiplier: -3.5014,
                 active: Activity::Lower,
                 aggregate: None,
+                true_value: None,
             },
         )]
         .into(),
