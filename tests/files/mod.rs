@@ -13,6 +13,7 @@ mod element_steps;
 mod equilibrium;
 mod faults;
 pub mod finite_elements;
+mod fixed_steps;
 mod flexible_families;
 mod flexible_scenes;
 mod layers;
