@@ -1,5 +1,6 @@
 //! The command line: arguments, progress, exit codes.
 
+mod aggregates;
 mod arguments;
 mod compare;
 mod error_table;

@@ -1,5 +1,6 @@
 //! `optimize simulate` and `optimize check`.
 
+use super::aggregates::{add_smoothed, told};
 use super::arguments::Job;
 use super::error_table::{self, table};
 use super::{DONE, Failure, NOT_REACHED, draw, load, print, read, refine, shown, tell};
@@ -96,6 +97,9 @@ fn as_json(
             json!({"value": found.value, "unit": simulation.at.scene.functions[f].unit()});
         if let Some(Maximum { value, time, error }) = found.maximum {
             own["true_maximum"] = json!({"value": value, "time": time, "error": error});
+        }
+        if let Some(smoothed) = simulation.at.smoothed(f) {
+            add_smoothed(&mut own, &smoothed, found.maximum.is_some());
         }
         functions.insert(name.clone(), own);
     }
@@ -211,6 +215,7 @@ fn summary(problem: &Problem, simulation: &Simulation) -> String {
                 None => text.push(')'),
             }
         }
+        text += &told(simulation.at.smoothed(f), found.maximum.is_some());
         text.push('\n');
     }
     let (first, last) = (&simulation.observations[0], simulation.observations.last());

@@ -1,5 +1,6 @@
 //! `optimize simulate`, `explain` and `work-precision` of structures.
 
+use super::aggregates::{add_smoothed, told};
 use super::arguments::Job;
 use super::error_table::table;
 use super::{DONE, Failure, draw, print, shown, tell};
@@ -39,6 +40,9 @@ pub(crate) fn simulate(job: &Job, problem: &Problem, json: bool) -> Result<u8, F
             if let Some(peak) = found.peak {
                 let place = place(&design.statics.cases, &peak);
                 own["true_maximum"] = json!({"value": peak.ratio, "place": place});
+            }
+            if let Some(smoothed) = design.smoothed(f) {
+                add_smoothed(&mut own, &smoothed, found.peak.is_some());
             }
             if let Some(errors) = &errors {
                 own["error"] = json!(errors[f].value.error);
@@ -143,6 +147,7 @@ fn summary(problem: &Problem, design: &StaticDesign) -> String {
             let place = place(&design.statics.cases, &peak);
             let _ = write!(text, "  true maximum {:.9e} at {place}", peak.ratio);
         }
+        text += &told(design.smoothed(f), found.peak.is_some());
         text.push('\n');
     }
     text

@@ -9,6 +9,7 @@ use crate::functions::evaluate::ungated_maximum;
 use crate::functions::instant::Instant;
 use crate::functions::{Bound, Function, Reduction};
 use crate::integrate::{IntegrationFailure, WorkCounts};
+use crate::math::soft_max::Smoothed;
 use crate::problem::{Asked, Problem};
 use crate::report::optimum::{Aggregate, Integration as IntegrationRecord, Lies};
 use crate::structures::functions::{self, Peak};
@@ -212,6 +213,36 @@ impl Simulated {
         }
     }
 
+    /// What a function stands for, if something in it is smoothed.
+    pub(crate) fn smoothed(&self, f: usize) -> Option<Smoothed> {
+        match self {
+            Self::Motion(simulation) => simulation.at.smoothed(f),
+            Self::Statics(at) => at.smoothed(f),
+        }
+    }
+
+    /// What a function stands for, if something else than a maximum over time or points is smoothed.
+    pub(super) fn true_value(&self, f: usize) -> Option<f64> {
+        match self.maximum(f) {
+            None => Some(self.smoothed(f)?.value),
+            Some(_) => None,
+        }
+    }
+
+    /// Warnings of functions whose aggregates are far from what they stand for; `when` says at which design.
+    pub(super) fn far(&self, problem: &Problem, used: &[usize], when: &str) -> Vec<String> {
+        let one = |&f: &usize| {
+            let Smoothed { value, far } = self.smoothed(f)?;
+            let name = &problem.function_names[f];
+            let unit = problem.function_unit(f);
+            Some(format!(
+                "the true value of \"{name}\" {when} is {value:.6e} {unit}, and {}",
+                far?
+            ))
+        };
+        used.iter().filter_map(one).collect()
+    }
+
     /// Errors of the functions `which`, and of their gradients if `gradients`.
     ///
     /// # Errors
@@ -292,9 +323,13 @@ impl Simulated {
                     Reduction::Ks {
                         bound: Bound::Above,
                         ..
-                    } => true,
-                    // The sum over points lies above their maximum, the mean over time below.
-                    _ if matches!(instant, Instant::ShellStress { .. }) => {
+                    } if !matches!(instant, Instant::LargestDeformation { .. }) => true,
+                    // Sums over points lie above their maximum, means over time and points below.
+                    _ if matches!(
+                        instant,
+                        Instant::ShellStress { .. } | Instant::LargestDeformation { .. }
+                    ) =>
+                    {
                         found.value >= maximum.value
                     }
                     _ => false,

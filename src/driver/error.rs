@@ -11,6 +11,10 @@
 //! A function of the end alone has no second term. The terms are separate, so each may have any
 //! size and sign. Motions that are sampled at the ends of equal steps have no cells: every second
 //! sample of the finer run is used instead.
+//!
+//! Flexible bodies have vibrations that steps of one size do not follow. A method that damps them makes f_{h/2} as wrong
+//! as f_h, and the difference of both may vanish. Such motions are made with doubled steps, too, and all three are
+//! judged together (see [`of_three`]).
 
 use super::evaluate::Evaluated;
 use super::event::{self, Admit};
@@ -110,23 +114,29 @@ pub(crate) fn estimate(
         true => 16,
         false => quadrature::order(&at.run.instants),
     };
+    let doubled = doubled(problem, at, (&summed[..], &between), which, &numbers)?;
     let [steps, samples] = [at.run.method.order(), of_sums].map(|order| {
         let gain = 2.0_f64.powi(order as i32);
         gain / (gain - 1.0)
     });
     let mut all = Vec::new();
     let rows = which.iter().zip(coarse).zip(finer).zip(maxima);
-    for (((&function, coarse), finer), maximum) in rows {
+    for (row, (((&function, coarse), finer), maximum)) in rows.enumerate() {
         let thinner = match summed.contains(&function) {
             true => thinner.next().unwrap_or_else(|| finer.clone()),
             // Its error is that of the steps alone.
             false if cells => coarse.clone(),
             false => finer.clone(),
         };
-        let estimate = |((&h, &thin), &fine): ((&f64, &f64), &f64)| {
-            let (of_steps, of_samples) = match cells {
-                true => ((thin - fine) * steps, (h - thin) * samples),
-                false => ((h - thin) * steps, (thin - fine) * samples),
+        let gain = steps / (steps - 1.0);
+        let estimate = |(number, ((&h, &thin), &fine)): (usize, ((&f64, &f64), &f64))| {
+            let (halving, of_samples) = match cells {
+                true => (thin - fine, (h - thin) * samples),
+                false => (h - thin, (thin - fine) * samples),
+            };
+            let of_steps = match &doubled {
+                Some(rows) => of_three(rows[row][number], halving, gain),
+                None => halving * steps,
             };
             Estimate {
                 value: h,
@@ -136,7 +146,7 @@ pub(crate) fn estimate(
             }
         };
         let numbers = coarse.iter().zip(&thinner).zip(&finer);
-        let mut estimates: Vec<Estimate> = numbers.map(estimate).collect();
+        let mut estimates: Vec<Estimate> = numbers.enumerate().map(estimate).collect();
         all.push(FunctionError {
             function,
             value: estimates.remove(0),
@@ -153,6 +163,103 @@ pub(crate) fn estimate(
         });
     }
     Ok(all)
+}
+
+/// The error of f_h, from f_2h − f_h and f_h − f_{h/2}; `gain` is 2ᵐ.
+///
+/// Their ratio is 2ᵐ for small steps and smaller where stiff parts reduce the order. Then the differences are a
+/// geometric series. With a larger ratio the second difference is small by chance, or because half steps damp the same
+/// vibrations; the first one then tells the error by the order of the method. Without a decline no error of another
+/// size is known than that of the differences.
+fn of_three(first: f64, second: f64, gain: f64) -> f64 {
+    const DECLINES: f64 = 1.5;
+    let ratio = first / second;
+    let sign = if second == 0.0 { first } else { second };
+    let size = match ratio.is_nan() || ratio.abs() < DECLINES || ratio < 0.0 && ratio > -gain {
+        true => first.abs().max(second.abs()),
+        false => first.abs() / (ratio.abs().min(gain) - 1.0),
+    };
+    size.copysign(sign)
+}
+
+/// Differences of functions and derivatives by doubled steps from those by the steps in use, with samples at the same
+/// instants; `None` of rigid scenes, and if steps have no pairs of one size.
+fn doubled(
+    problem: &Problem,
+    at: &Evaluated,
+    (summed, between): (&[usize], &Evaluated),
+    which: &[usize],
+    numbers: &impl Fn(&Evaluated, &[usize]) -> Result<Vec<Vec<f64>>, IntegrationFailure>,
+) -> Result<Option<Vec<Vec<f64>>>, IntegrationFailure> {
+    let (run, cells) = (&at.run, at.run.has_cells);
+    let grid = match cells && !summed.is_empty() {
+        true => run.grid.with_double_cells().paired(),
+        false => run.grid.paired(),
+    };
+    let (Some(grid), false) = (grid, at.scene.model.flexible.is_empty()) else {
+        return Ok(None);
+    };
+    let instants = run.last();
+    let even = cells || summed.is_empty() || instants.is_multiple_of(2);
+    if !even {
+        return Ok(None);
+    }
+    let settings = Settings {
+        method: run.method,
+        solver: run.solver,
+        spacing: Spacing::Frozen(grid),
+        samples: if cells {
+            Samples::Quadrature(0)
+        } else if run.instants == run.grid.ends() {
+            Samples::StepEnds
+        } else {
+            Samples::Uniform((instants / 2).max(1))
+        },
+        limits: problem.simulation.limits.clone(),
+        memory: 0,
+    };
+    let mut scene = at.scene.clone();
+    // Doubled steps may be too large for Newton's method.
+    let Ok(found) = event::settle(&mut scene, &settings, run.duration, Admit::Late) else {
+        return Ok(None);
+    };
+    let x = at.x.clone();
+    let coarse = Evaluated {
+        x,
+        scene,
+        run: found,
+    };
+    // The motion by the steps in use with the samples of the other.
+    let mut thinned: Evaluated;
+    let same = match (cells, summed.is_empty()) {
+        (_, true) => at,
+        (true, false) => between,
+        (false, false) => {
+            thinned = Evaluated {
+                x: at.x.clone(),
+                scene: at.scene.clone(),
+                run: at.run.clone(),
+            };
+            thin(&mut thinned.run);
+            &thinned
+        }
+    };
+    let of_sums = |f: &usize| summed.contains(f);
+    let (sums, ends): (Vec<usize>, Vec<usize>) = which.iter().copied().partition(of_sums);
+    let differences = |beside: &Evaluated, which: &[usize]| -> Result<_, IntegrationFailure> {
+        let pairs = numbers(&coarse, which)?
+            .into_iter()
+            .zip(numbers(beside, which)?);
+        let row = |(a, b): (Vec<f64>, Vec<f64>)| a.iter().zip(b).map(|(a, b)| a - b).collect();
+        Ok(pairs.map(row).collect::<Vec<Vec<f64>>>().into_iter())
+    };
+    let (mut by_sums, mut by_ends) = (differences(same, &sums)?, differences(at, &ends)?);
+    let next = |f: &usize| match summed.contains(f) {
+        true => by_sums.next(),
+        false => by_ends.next(),
+    };
+    let rows = which.iter().map(next);
+    Ok(Some(rows.map(Option::unwrap_or_default).collect()))
 }
 
 /// The settings of a run with every step halved and twice the samples.
@@ -196,4 +303,39 @@ fn thin(run: &mut Trajectory<f64>) {
     run.places = run.places.iter().copied().step_by(2).collect();
     run.shown = vec![true; run.instants.len()];
     run.weights = quadrature::weights(&run.instants);
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// f_h = c hᵐ has the error c hᵐ; so has a series of a smaller order. Where the second difference vanishes by
+    /// chance, the first tells the error by the order; where nothing declines, it is the larger of both.
+    #[test]
+    fn three_runs_tell_the_error() {
+        for order in 1..6 {
+            let gain = 2.0_f64.powi(order);
+            for smaller in 1..=order {
+                let own = 2.0_f64.powi(smaller);
+                for c in [1e-3, -7.0] {
+                    let (first, second) = (c * (own - 1.0), c * (1.0 - 1.0 / own));
+                    let found = of_three(first, second, gain);
+                    assert!(
+                        (found - c).abs() < 1e-12 * c.abs(),
+                        "{order} {smaller}: {found}"
+                    );
+                }
+            }
+            let first = 3.0 * (gain - 1.0);
+            for second in [0.0, 1e-9, -1e-9] {
+                assert!((of_three(first, second, gain).abs() - 3.0).abs() < 1e-12);
+            }
+            for (first, second) in [(1.0, 1.0), (0.1, -2.0), (1e-3, 1.0), (-1.1, 1.0)] {
+                let largest = f64::max(first, second).abs().max(f64::abs(second));
+                let most = f64::abs(first).max(largest);
+                assert_eq!(of_three(first, second, gain.max(4.0)).abs(), most);
+            }
+        }
+        assert_eq!(of_three(0.0, 0.0, 4.0), 0.0);
+    }
 }

@@ -3,10 +3,11 @@
 use super::integration::{Integration, Refresh};
 use crate::adjoint;
 use crate::functions::rest::{passes_rest, vanishing};
-use crate::functions::{Scene, evaluate};
+use crate::functions::{Scene, evaluate, smoothed};
 use crate::integrate::{
     IntegrationFailure, Samples, Settings, Trajectory, WorkCounts, simulate_by,
 };
+use crate::math::soft_max::Smoothed;
 use crate::math::{Dual, Parameters};
 use crate::model::RigidBody;
 use crate::model::flexible::FlexibleBody;
@@ -161,6 +162,13 @@ impl Evaluated {
     /// A function of interest, by index.
     pub(crate) fn function(&self, index: usize) -> evaluate::Evaluated<f64> {
         self.scene.functions[index].evaluate(&self.scene.model, &self.run)
+    }
+
+    /// What a function of interest stands for, if something in it is smoothed.
+    pub(crate) fn smoothed(&self, index: usize) -> Option<Smoothed> {
+        let function = &self.scene.functions[index];
+        let found = self.function(index);
+        smoothed::of_motion(function, &self.scene.model, &self.run, &found)
     }
 
     /// Exact gradients of the functions `which` in the design variables, and the work they took.

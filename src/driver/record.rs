@@ -132,12 +132,15 @@ pub(super) fn record(
         used.sort_unstable();
         used.dedup();
         warnings.extend(end.warnings(problem, &used));
+        if let Ok(start) = start {
+            warnings.extend(start.far(problem, &used, "at the start"));
+        }
     }
     let constraints = constraints(
         problem,
         outcome,
         maximise,
-        start.as_ref().ok(),
+        (start.as_ref().ok(), end),
         (aggregate, error),
     );
     warnings.extend(
@@ -171,6 +174,7 @@ pub(super) fn record(
             unit: Some(problem.function_unit(objective.function)),
             true_maximum: end.and_then(|end| end.maximum(objective.function)),
             aggregate: aggregate(objective.function),
+            true_value: end.and_then(|end| end.true_value(objective.function)),
             estimated_error: estimate.map(|e| e.error),
         },
         start_objective,
@@ -237,7 +241,7 @@ fn constraints(
     problem: &Problem,
     outcome: &Outcome,
     maximise: bool,
-    start: Option<&Simulated>,
+    (start, end): (Option<&Simulated>, Option<&Simulated>),
     (aggregate, error): (
         impl Fn(usize) -> Option<Aggregate>,
         impl Fn(usize) -> Option<f64>,
@@ -276,6 +280,7 @@ fn constraints(
                 active: active(&c.name),
                 aggregate: aggregate(c.function),
                 estimated_error: error(c.function),
+                true_value: end.and_then(|end| end.true_value(c.function)),
             };
             (c.name.clone(), constraint)
         })

@@ -226,7 +226,7 @@ fn sample_at<S: SolveScalar>(
 }
 
 /// What `of` takes from some instants of a run. Multipliers are computed if the quantity needs them.
-fn sample_with<S: SolveScalar, T>(
+pub(super) fn sample_with<S: SolveScalar, T>(
     instant: &Instant<S>,
     turns: &Option<Vec<f64>>,
     (model, run): (&Model<S>, &Trajectory<S>),

@@ -49,6 +49,12 @@ impl<S: Scalar> Instant<S> {
                 let soft = stress(at, &at.motions(), (*flexible, elements, *rho));
                 (soft.ks, S::from(soft.maximum))
             }
+            Instant::LargestDeformation {
+                flexible: body,
+                unknowns,
+                largest,
+                ..
+            } => largest.value_and_largest(&at.unknowns(*body, unknowns.as_deref())),
             _ => {
                 let value = self.value(at, turns);
                 (value, value)

@@ -12,6 +12,7 @@ pub(crate) mod peak;
 pub(crate) mod resolution;
 pub(crate) mod rest;
 pub(crate) mod scene;
+pub(crate) mod smoothed;
 pub(crate) mod snapshot;
 pub(crate) mod stations;
 pub(crate) mod turning;

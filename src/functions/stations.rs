@@ -36,6 +36,12 @@ impl<S: Scalar> Largest<S> {
     pub(crate) fn value(&self, q: &[S]) -> S {
         self.soft(q).ks
     }
+
+    /// Its value, and the largest one of all forms.
+    pub(crate) fn value_and_largest(&self, q: &[S]) -> (S, S) {
+        let soft = self.soft(q);
+        (soft.ks, S::from(soft.maximum))
+    }
 }
 
 impl Largest<f64> {

@@ -175,6 +175,23 @@ impl Grid {
         }
     }
 
+    /// Steps of twice the size, each with the cells of both, if all have one size and their number is even.
+    pub(crate) fn paired(&self) -> Option<Self> {
+        let width = self.equal?;
+        if !self.steps().is_multiple_of(2) {
+            return None;
+        }
+        let cells = self.cells.chunks_exact(2).map(|pair| pair.iter().sum());
+        Some(Self {
+            ends: self.ends.iter().copied().step_by(2).collect(),
+            equal: Some(2.0 * width),
+            cells: cells.collect(),
+            left_out: (self.left_out.iter())
+                .map(|(step, rows)| (step.div_ceil(2), rows.clone()))
+                .collect(),
+        })
+    }
+
     /// The last end so far.
     pub(crate) fn reached(&self) -> f64 {
         self.ends[self.ends.len() - 1]

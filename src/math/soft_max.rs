@@ -70,6 +70,98 @@ impl<S: Scalar> SoftMax<S> {
     }
 }
 
+/// An aggregate that differs from what it stands for by more than this part is told.
+const NEAR: f64 = 0.01;
+/// Largest number of parameters that are tried, and the ratio of two of them that are close enough.
+const TRIALS: usize = 20;
+const CLOSE: f64 = 1.2;
+
+/// What a smooth aggregate stands for.
+#[derive(Clone, Debug, PartialEq)]
+pub(crate) struct Smoothed {
+    /// The true value.
+    pub value: f64,
+    /// How far the aggregate is from it, if that is more than 1 %.
+    pub far: Option<Far>,
+}
+
+/// An aggregate that is not near its true value.
+#[derive(Clone, Debug, PartialEq)]
+pub(crate) struct Far {
+    /// The difference, relative to the true value.
+    pub part: f64,
+    /// Parameters ρ that would leave at most 1 % of it, if some are known.
+    pub rho: Option<Vec<f64>>,
+}
+
+impl std::fmt::Display for Far {
+    fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
+        write!(
+            f,
+            "the aggregate differs from it by {:.2} %",
+            100.0 * self.part
+        )?;
+        let Some(rho) = &self.rho else {
+            return write!(
+                f,
+                ", and with these samples no \"rho\" brings it within 1 %"
+            );
+        };
+        let rho: Vec<String> = rho.iter().map(|rho| format!("{rho}")).collect();
+        write!(
+            f,
+            "; a \"rho\" of {} keeps it within 1 %",
+            rho.join(" and ")
+        )
+    }
+}
+
+/// Compares an aggregate with its true value; `scale` is the size that differences are relative to, and `with` gives
+/// the aggregate with every ρ times a factor.
+pub(crate) fn smoothed(
+    aggregate: f64,
+    (value, scale): (f64, f64),
+    rho: Vec<f64>,
+    with: impl Fn(f64) -> f64,
+) -> Smoothed {
+    let most = NEAR * scale;
+    let mut difference = (aggregate - value).abs();
+    if !(difference > most && most > 0.0) {
+        return Smoothed { value, far: None };
+    }
+    let part = difference / scale;
+    // The factors of an aggregate that is far and of one that is near.
+    let (mut far, mut near) = (1.0, f64::INFINITY);
+    for _ in 0..TRIALS {
+        // The difference falls as ln(number of values)/ρ or faster.
+        let factor = match near.is_finite() {
+            true => f64::sqrt(far * near),
+            false => far * (difference / most).clamp(1.1, 1e3),
+        };
+        difference = (with(factor) - value).abs();
+        match difference <= most {
+            true => near = factor,
+            false => far = factor,
+        }
+        if near < CLOSE * far {
+            break;
+        }
+    }
+    let rho = near.is_finite().then(|| {
+        let sharper = rho.iter().map(|rho| two_digits(rho * near));
+        sharper.collect()
+    });
+    Smoothed {
+        value,
+        far: Some(Far { part, rho }),
+    }
+}
+
+/// A number of two digits that is not below `x` > 0: half a unit of the second digit is at most 5 % of it.
+fn two_digits(x: f64) -> f64 {
+    format!("{:.1e}", 1.05 * x).parse().unwrap_or(x)
+}
+
 #[cfg(test)]
 mod tests {
     use super::*;
@@ -83,6 +175,41 @@ mod tests {
             assert!(soft.ks >= soft.maximum + 0.25_f64.ln() / rho);
             assert!((soft.weights.iter().sum::<f64>() - 1.0).abs() < 1e-15);
             assert!(soft.induced_exponential(&values) <= 849.0 + 1e-9);
+        }
+    }
+
+    /// The minimum −(1/ρ) ln Σ e^{−ρ f} of n equal values lies ln n / ρ below them: 1 % of them at ρ = 100 ln n / f.
+    #[test]
+    fn the_rho_that_is_told_brings_the_aggregate_within_one_percent() {
+        for (value, count, rho) in [
+            (7.0, 4, 0.1),
+            (1e-3, 9, 3.0),
+            (2e6, 2, 1e-8),
+            (0.5, 100, 40.0),
+        ] {
+            let gap = |rho: f64| f64::from(count).ln() / rho;
+            let with = |factor: f64| value - gap(rho * factor);
+            let found = smoothed(with(1.0), (value, value), vec![rho], with);
+            let far = found.far.expect("it is far");
+            assert!((far.part - gap(rho) / value).abs() < 1e-12 * far.part);
+            let told = far.rho.expect("it is known")[0];
+            assert!(gap(told) <= 0.01 * value, "{told}");
+            let least = 100.0 * f64::from(count).ln() / value;
+            assert!(told < 1.4 * least, "{told} {least}");
+            let near = smoothed(value - gap(told), (value, value), vec![told], |_| f64::NAN);
+            assert_eq!(near.far, None);
+        }
+        // What no ρ brings near, and a scale of zero.
+        let never = smoothed(2.0, (1.0, 1.0), vec![1.0], |_| 2.0);
+        assert_eq!(never.far.expect("it is far").rho, None);
+        assert_eq!(smoothed(2.0, (0.0, 0.0), vec![1.0], |_| 2.0).far, None);
+    }
+
+    #[test]
+    fn numbers_of_two_digits_are_not_below() {
+        for x in [1.0, 1.04, 9.94, 9.99, 1.23e-7, 8.76e9] {
+            let rounded = two_digits(x);
+            assert!(rounded >= x && rounded <= 1.11 * x, "{x} {rounded}");
         }
     }
 

@@ -28,6 +28,11 @@ pub(super) struct Damage {
 }
 
 impl Damage {
+    /// Whether nothing was removed.
+    pub(crate) fn is_empty(&self) -> bool {
+        self.sections.is_empty() && self.entries.is_empty()
+    }
+
     /// Whether a part of a section was removed.
     pub(crate) fn touches(&self, section: &str) -> bool {
         self.sections.contains(section) || self.entries.iter().any(|(own, _)| own == section)

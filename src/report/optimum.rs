@@ -112,6 +112,10 @@ pub(crate) struct Objective {
     /// The aggregated quantity, if it is an aggregate.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub aggregate: Option<Aggregate>,
+    /// What `value` stands for, if it smooths something else than a maximum: the lowest frequency, the clearance of the
+    /// best release.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub true_value: Option<f64>,
     /// Estimated error of `value` by the discretisation in time, absolute.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub estimated_error: Option<f64>,
@@ -178,6 +182,9 @@ pub(crate) struct ConstraintValue {
     /// Estimated error of `value` by the discretisation, absolute; older records have none.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub estimated_error: Option<f64>,
+    /// As [`Objective::true_value`].
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub true_value: Option<f64>,
 }
 
 /// A smooth aggregate and the largest value over time, or over a structure.

@@ -87,6 +87,9 @@ fn objective(optimum: &Optimum) -> String {
     if let Some(aggregate) = &objective.aggregate {
         text.push_str(&format!("  {}\n", attained(aggregate, &unit)));
     }
+    if let Some(value) = objective.true_value {
+        text.push_str(&true_value("", value, objective.value, &unit));
+    }
     let source = match is_at_rest(optimum) {
         false => "steps and samples",
         true => "the mesh",
@@ -245,14 +248,27 @@ fn attained(aggregate: &Aggregate, unit: &str) -> String {
     text + ")"
 }
 
+/// The true value of an aggregate that is no maximum.
+fn true_value(name: &str, value: f64, aggregate: f64, unit: &str) -> String {
+    format!(
+        "  {name}the true value is {}{unit}, the aggregate differs from it by {}{unit}\n",
+        significant(value, 8),
+        significant(aggregate - value, 3),
+    )
+}
+
 /// What constraints on aggregates mean for the largest values.
 fn maxima(optimum: &Optimum) -> String {
     let mut text = String::new();
     for (name, constraint) in &optimum.constraints {
+        let unit = with_space(constraint.unit.as_deref());
+        if let Some(value) = constraint.true_value {
+            let name = format!("{name}: ");
+            text.push_str(&true_value(&name, value, constraint.value, &unit));
+        }
         let Some(aggregate) = &constraint.aggregate else {
             continue;
         };
-        let unit = with_space(constraint.unit.as_deref());
         let maximum = aggregate.true_maximum;
         text.push_str(&format!(
             "  {name}: the true maximum is {}{unit}, the aggregate differs from it by {}{unit}\n    {}\n",

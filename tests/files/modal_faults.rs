@@ -237,6 +237,44 @@ fn faults_of_matrices_are_told_with_their_place() {
     );
 }
 
+/// An entry beside the diagonal of the mass matrix that is too large: some motion has a negative mass. The fault names
+/// the file, for couplings of axial, transverse and rotational unknowns.
+#[test]
+fn a_mass_matrix_that_is_not_positive_is_a_fault_of_its_file() {
+    let text = std::fs::read_to_string(data("beam_m.mtx")).expect("a file");
+    let beside: Vec<usize> = (text.lines().enumerate().skip(3))
+        .filter(|(_, line)| {
+            let mut words = line.split_whitespace();
+            let [i, j, value] = [0; 3].map(|_| words.next().expect("an entry"));
+            i != j && value.parse() != Ok(0.0)
+        })
+        .map(|(number, _)| number)
+        .collect();
+    for k in [0, 1, 2, 3, 5, 8, 13, beside.len() - 1] {
+        let change = |text: &str| {
+            let lines = text.lines().enumerate().map(|(number, line)| {
+                let mut words: Vec<String> = line.split_whitespace().map(str::to_owned).collect();
+                if number == beside[k] {
+                    let value: f64 = words[2].parse().expect("a number");
+                    words[2] = format!("{:e}", 50.0 * value);
+                }
+                words.join(" ") + "\n"
+            });
+            lines.collect()
+        };
+        let (_directory, path) = changed("beam_m.mtx", change);
+        let told = Problem::load(&path, &[]).expect_err("a fault").to_string();
+        assert!(
+            told.contains("in beam_m.mtx a mass matrix that is not positive"),
+            "{told}"
+        );
+        assert!(
+            told.contains("/bodies/arm/modal/source/matrix_market/mass"),
+            "{told}"
+        );
+    }
+}
+
 /// DMIG text that is wrong.
 #[test]
 fn faults_of_punched_matrices_are_told_with_their_place() {

@@ -1,7 +1,7 @@
 //! Bodies from files in scenes: starts of joints, torques, fast rotation, and files of few digits.
 
-use super::modal::{YOUNG, beam, modal, pendulum};
-use crate::tests::reference::documents::{problem as parsed, run, values};
+use super::modal::{YOUNG, beam, data, modal, pendulum};
+use crate::tests::reference::documents::{problem as parsed, run, value, values};
 use flexbody::problem::Problem;
 use serde_json::Value;
 
@@ -158,4 +158,23 @@ fn few_digits_suffice_where_entries_do_not_cancel() {
         .map(|w| w * w)
         .sum();
     assert!((sum / trace - 1.0).abs() < 5e-3, "{sum} {trace}");
+}
+
+/// A bar of four cubic elements on a ball at its clamped end, which a force of 20 N that follows it swings: the end is
+/// 0.0724 m aside after 0.05 s, as that of bars of 8 and 16 elements and of a beam of assumed modes. Its inertia about
+/// its own axis is small, so sums of masses that are not those of a body would make the inertia of the deformed bar
+/// negative.
+#[test]
+fn a_coarse_bar_on_a_ball_runs() {
+    let body = json!({"source": {"matrix_market": {"nodes": data("coarse_bar.nodes"), "stiffness": data("coarse_bar_k.mtx"), "mass": data("coarse_bar_m.mtx")}},
+        "interfaces": {"a": 1, "z": 5}, "frame": {"clamped": "a"}, "modes": 5, "damping": {"ratio": 0.1}});
+    let file = json!({
+        "version": 1, "name": "bar", "bodies": {"b": {"modal": body, "place": {"put": "a", "at": [0, 0, 0]}}},
+        "joints": {"h": {"spherical": {"between": ["b", "ground"], "at": "b.a"}}},
+        "loads": {"f": {"force": {"body": "b", "point": "z", "direction": [0, 1, 0], "axes": "body", "magnitude": 20}}},
+        "simulation": {"duration": 0.05, "tolerance": 1e-4, "method": {"radau": {"stages": 3}}},
+        "functions": {"y": {"final": {"position": {"body": "b", "point": "z", "direction": [0, 1, 0]}}}}
+    });
+    let y = value(&file, "y");
+    assert!((y / 0.0724 - 1.0).abs() < 5e-3, "{y}");
 }

@@ -64,6 +64,7 @@ fn optimum() -> Optimum {
             unit: Some("m".into()),
             true_maximum: Some(867.7),
             aggregate: None,
+            true_value: None,
             estimated_error: Some(0.003),
         },
         start_objective: Some(546.507),
@@ -90,6 +91,7 @@ fn optimum() -> Optimum {
                 active: Activity::Lower,
                 aggregate: None,
                 estimated_error: None,
+                true_value: None,
             },
         )]
         .into(),

@@ -9,6 +9,7 @@ pub mod documents;
 pub mod flexible;
 pub mod gradients;
 pub mod models;
+pub(crate) mod mutations;
 pub mod shells;
 
 use flexbody::integrate::{Method, Multipliers, Settings, Start, Trajectory, simulate};

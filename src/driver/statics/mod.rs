@@ -9,12 +9,14 @@ pub(crate) mod precision;
 
 use super::evaluate::Derivative;
 use crate::integrate::WorkCounts;
+use crate::math::soft_max::{Smoothed, smoothed};
 use crate::problem::{Asked, Problem, StaticScene, Statics, Workspace};
 use crate::structures::functions::{Function, Peak, Solved};
 use crate::structures::gradient::{Gradient, gradient, gradient_von_karman};
 use crate::structures::loads::Load;
 use crate::structures::modes::{
     LowestFrequency, ModalFailure, ModalProblem, Modes, frequency_gradient, lowest_frequency,
+    lowest_of,
 };
 use crate::structures::properties::PropertyFault;
 use crate::structures::quality::{MeshFault, faults};
@@ -341,6 +343,33 @@ impl StaticDesign {
     /// If it was not requested.
     pub(crate) fn function(&self, f: usize) -> StaticValue {
         self.values[f].expect("the function was asked for")
+    }
+
+    /// What a requested function stands for, if it is an aggregate.
+    pub(crate) fn smoothed(&self, f: usize) -> Option<Smoothed> {
+        let found = self.values[f]?;
+        match &self.statics.functions[f] {
+            Asked::LowestFrequency(rho) => {
+                let frequencies = self.lowest[f].as_ref()?.modes.frequencies();
+                let lowest = *frequencies.first()?;
+                // Sharper aggregates need no more modes.
+                let with = |factor: f64| lowest_of(&frequencies, rho * factor);
+                Some(smoothed(found.value, (lowest, lowest), vec![*rho], with))
+            }
+            Asked::OfSolutions(function @ Function::Stress { rho, .. }) => {
+                let largest = found.peak?.ratio;
+                let with = |factor: f64| {
+                    let mut sharper = function.clone();
+                    if let Function::Stress { rho, .. } = &mut sharper {
+                        *rho *= factor;
+                    }
+                    let value = self.with_solved(|solved| solved.value(&sharper).ok());
+                    value.flatten().unwrap_or(f64::NAN)
+                };
+                Some(smoothed(found.value, (largest, largest), vec![*rho], with))
+            }
+            Asked::OfSolutions(_) | Asked::Frequency(_) | Asked::DistanceFromStart => None,
+        }
     }
 
     /// The derivatives of a function by structure and loads.

@@ -29,6 +29,8 @@ const RENEW: f64 = 0.1;
 /// The iteration matrix is renewed after this many steps of one iteration each.
 const UNSEEN: usize = 8;
 const ITERATIONS: usize = 25;
+/// Without finite elements the backward error is asked only after so many iterations.
+const UNJUDGED: usize = 4;
 /// With finite elements, whose factors are expensive, Broyden's method corrects kept factors. They
 /// are renewed within a step above this contraction.
 const SLOW: f64 = 0.5;
@@ -76,8 +78,10 @@ pub(crate) struct Newton<'a, S> {
     correction: Correction<S>,
     turned: Turned,
     pace: Pace,
-    /// With finite elements.
+    /// With flexible bodies, whose stiff forces have much round-off. Those without finite elements ask it only where
+    /// the iterates approach no further.
     backward: Option<BackwardError>,
+    shells: bool,
     floor: NoiseFloor,
     scale: SceneScale,
     residual: Vec<S>,
@@ -112,7 +116,8 @@ impl<'a, S: SolveScalar> Newton<'a, S> {
             },
             pace: Pace::default(),
             floor: NoiseFloor::default(),
-            backward: shells.then(|| BackwardError::new(length)),
+            backward: (!model.flexible.is_empty()).then(|| BackwardError::new(length)),
+            shells,
             scale: SceneScale::of(model),
             residual: vec![S::zero(); length],
         }
@@ -251,9 +256,10 @@ impl<'a, S: SolveScalar> Newton<'a, S> {
                 self.made.1 = [h, history.c];
                 self.fit();
             }
-            if let Some(backward) = &mut self.backward {
+            let judged = self.shells || iteration > UNJUDGED;
+            if let Some(backward) = self.backward.as_mut().filter(|_| judged) {
                 backward.take(&self.equations, [&self.residual]);
-                if !S::INFINITESIMAL && iteration > 1 && backward.is_solved() {
+                if self.shells && !S::INFINITESIMAL && iteration > 1 && backward.is_solved() {
                     self.end_step(iteration);
                     return Ok(());
                 }
@@ -283,9 +289,10 @@ impl<'a, S: SolveScalar> Newton<'a, S> {
             let slow = contraction.max(before);
             let remaining = size * (slow / (1.0 - slow.min(0.9))).min(1.0);
             before = contraction;
-            let told =
-                |holds: fn(&BackwardError) -> bool| self.backward.as_ref().is_some_and(holds);
-            let standing = told(BackwardError::is_standing);
+            let judge = self.backward.as_ref();
+            let standing = judge.is_some_and(BackwardError::is_standing);
+            let judge = judge.filter(|_| self.shells);
+            let told = |holds: fn(&BackwardError) -> bool| judge.is_some_and(holds);
             // Old factors contract slowly without round-off.
             let slowest = if made_here { still } else { SLOW };
             let small = size <= scales.round_off.max(STAGNANT) || residual <= round_off;

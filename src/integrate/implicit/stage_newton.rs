@@ -74,8 +74,11 @@ pub(crate) struct StageNewton<'a, S> {
     /// renewed within a step.
     broyden: Option<Broyden<S>>,
     pace: Pace,
-    /// With finite elements.
+    /// With flexible bodies, whose stiff forces have much round-off. Those without finite elements ask it only where
+    /// the iterates approach no further.
     backward: Option<BackwardError>,
+    /// Whether matrices may be renewed in a step that would fail otherwise: it cannot be made smaller.
+    insists: bool,
     scale: SceneScale,
     residuals: Vec<Vec<S>>,
     updates: Vec<Vec<S>>,
@@ -108,7 +111,8 @@ impl<'a, S: SolveScalar> StageNewton<'a, S> {
             factors: StageFactors::new(real, numbering, scheme, estimates),
             broyden: shells.then(Broyden::new),
             pace: Pace::default(),
-            backward: shells.then(|| BackwardError::new(n)),
+            backward: (!model.flexible.is_empty()).then(|| BackwardError::new(n)),
+            insists: !estimates && !model.flexible.is_empty(),
             scale: SceneScale::of(model),
             residuals: vec![vec![S::zero(); n]; scheme.stages()],
             updates: vec![vec![S::zero(); n]; scheme.stages()],
@@ -166,27 +170,30 @@ impl<'a, S: SolveScalar> StageNewton<'a, S> {
     ) -> Result<(), IntegrationFailure> {
         if S::INFINITESIMAL || !self.factors.serve(h.re()) {
             self.factorise(stages, h.re(), at, counts)?;
-            return self.iterate(stages, h, at, counts);
+            return self.iterate(stages, h, at, (self.insists, &mut *counts));
         }
         for (predicted, stage) in self.predicted.iter_mut().zip(&*stages) {
             predicted.set(stage);
         }
-        self.iterate(stages, h, at, counts).or_else(|_| {
-            for (stage, predicted) in stages.iter_mut().zip(&self.predicted) {
-                stage.set(predicted);
-            }
-            self.factorise(stages, h.re(), at, counts)?;
-            self.iterate(stages, h, at, counts)
-        })
+        // Kept factors are given up as in a run that chooses its steps, whose repetition has to be equal.
+        self.iterate(stages, h, at, (false, &mut *counts))
+            .or_else(|_| {
+                for (stage, predicted) in stages.iter_mut().zip(&self.predicted) {
+                    stage.set(predicted);
+                }
+                self.factorise(stages, h.re(), at, counts)?;
+                self.iterate(stages, h, at, (self.insists, &mut *counts))
+            })
     }
 
-    /// Simplified Newton iterations with the kept factors.
+    /// Simplified Newton iterations with the kept factors. If they `insist`, the matrices are renewed at the last
+    /// iterate before they fail.
     fn iterate(
         &mut self,
         stages: &mut [Stage<S>],
         h: S,
         at: (usize, f64),
-        counts: &mut WorkCounts,
+        (insist, counts): (bool, &mut WorkCounts),
     ) -> Result<(), IntegrationFailure> {
         let numbering = self.numbering;
         let nv = numbering.velocities();
@@ -197,6 +204,7 @@ impl<'a, S: SolveScalar> StageNewton<'a, S> {
         let (mut renewals, uncorrected) = (0, S::INFINITESIMAL && self.broyden.is_some());
         let patience = if uncorrected { UNCORRECTED } else { 1 };
         let iterations = ITERATIONS * patience;
+        let mut insisted = 0;
         if let (Some(broyden), Some(backward)) = (&mut self.broyden, &mut self.backward) {
             broyden.clear();
             backward.begin();
@@ -205,7 +213,9 @@ impl<'a, S: SolveScalar> StageNewton<'a, S> {
                 self.factors.turn_to(&self.here.q);
             }
         }
-        for iteration in 1..=iterations {
+        let mut iteration = 0;
+        while iteration < iterations {
+            iteration += 1;
             let size = self.improve(stages, h, &scales, nv, counts);
             if !size.is_finite() {
                 return Err(self.not_finite(at));
@@ -233,10 +243,8 @@ impl<'a, S: SolveScalar> StageNewton<'a, S> {
                     noise = change;
                 }
             }
-            let solved = self
-                .backward
-                .as_ref()
-                .is_some_and(BackwardError::will_be_solved);
+            let judged = self.backward.as_ref().filter(|_| self.broyden.is_some());
+            let solved = judged.is_some_and(BackwardError::will_be_solved);
             if remaining <= TOLERANCE || stagnant || solved {
                 self.noise = noise;
                 if S::INFINITESIMAL {
@@ -272,10 +280,18 @@ impl<'a, S: SolveScalar> StageNewton<'a, S> {
                     self.factorise(stages, h.re(), at, counts)?;
                     renewals += 1;
                 } else if slow && !self.is_round_off(&scales) {
-                    break;
+                    if !insist || contraction > 1.0 || insisted == RENEWALS {
+                        break;
+                    }
+                    iteration = iterations;
                 }
             }
             previous = size;
+            if iteration == iterations && insist && insisted < RENEWALS {
+                insisted += 1;
+                self.factorise(stages, h.re(), at, counts)?;
+                (iteration, previous, before) = (0, f64::INFINITY, 0.0);
+            }
         }
         self.factors.forget();
         Err(self.stalled(stages, h, at, counts))
@@ -283,7 +299,11 @@ impl<'a, S: SolveScalar> StageNewton<'a, S> {
 
     /// Whether the residuals are round-off. A nearly singular matrix may turn them into changes of
     /// any size.
-    fn is_round_off(&self, scales: &Scales) -> bool {
+    fn is_round_off(&mut self, scales: &Scales) -> bool {
+        if let (None, Some(backward)) = (&self.broyden, &mut self.backward) {
+            backward.begin();
+            backward.take(&self.equations, &self.residuals);
+        }
         let limit = ROUND_OFF * scales.place().max(1.0);
         let all = self.residuals.iter().flatten();
         let standing = (self.backward.as_ref()).is_some_and(BackwardError::is_standing);
@@ -344,7 +364,7 @@ impl<'a, S: SolveScalar> StageNewton<'a, S> {
         for (stage, residual) in stages.iter().zip(&mut self.residuals) {
             self.equations.residual(&stage.instant(), h, residual);
         }
-        if let Some(backward) = &mut self.backward {
+        if let (Some(_), Some(backward)) = (&self.broyden, &mut self.backward) {
             backward.take(&self.equations, &self.residuals);
             if !S::INFINITESIMAL && backward.is_solved() {
                 return 0.0;

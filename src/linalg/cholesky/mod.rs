@@ -28,6 +28,8 @@ const SINGULAR_GROWTH: f64 = 1e14;
 const SUPERNODAL_FROM: SupernodalThreshold = SupernodalThreshold(0.3);
 /// First shift of the diagonal in the search for the weakest direction of an indefinite matrix.
 const PROBE_SHIFT: f64 = 1e-9;
+/// The last one, with the diagonal scaled to one.
+const LAST_SHIFT: f64 = 1e15;
 
 /// The matrix is not positive definite: its stiffness along `direction` is zero or negative.
 #[derive(Clone, Debug, PartialEq, thiserror::Error)]
@@ -155,7 +157,7 @@ impl SparseCholesky {
     /// definite.
     fn weakest(&mut self, pattern: &SymmetricPattern, values: &[f64]) -> NotPositiveDefinite {
         let mut shift = PROBE_SHIFT;
-        while !self.factorise_shifted(pattern, values, shift) && shift < 1e3 {
+        while !self.factorise_shifted(pattern, values, shift) && shift < LAST_SHIFT {
             shift *= 10.0;
         }
         let order = pattern.order();

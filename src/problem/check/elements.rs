@@ -224,7 +224,7 @@ impl Checker<'_> {
                 self.fault(Finding::new(place, found, expected).hint(hint));
             }
         }
-        if self.findings.is_empty() && prepare(self.document, elements).is_err() {
+        if self.sound() && prepare(self.document, elements).is_err() {
             let found = "elements that move without forces while their axes are held";
             let expected = "elements that hang together, for a reduced basis";
             self.fault(Finding::new(pointer, found, expected));
@@ -261,7 +261,7 @@ impl Checker<'_> {
             return;
         }
         // A faulty structure has no mesh to look into.
-        if !self.findings.is_empty() {
+        if !self.sound() {
             return;
         }
         let mesh = part::<f64>(&elements.structure, &[], 1).mesh;
@@ -331,7 +331,7 @@ impl Checker<'_> {
             self.fault(Finding::new(place, found, expected).of_key());
         }
         let Some(set) = &of.elements else { return };
-        if self.findings.is_empty() {
+        if self.sound() {
             let sets = part::<f64>(structure, &[], 1).mesh.face_sets;
             if sets.get(set).is_none_or(Vec::is_empty) {
                 let hint = advice(set, "sets of faces", sets.keys().map(String::as_str));

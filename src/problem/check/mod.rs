@@ -51,6 +51,12 @@ impl<'a> Checker<'a> {
         self.findings.push(finding);
     }
 
+    /// Whether nothing is wrong so far. Only then are all names known, also those of parts that were left out
+    /// because of their faults, so that a mesh can be built and looked into.
+    fn sound(&self) -> bool {
+        self.findings.is_empty() && self.damage.is_empty()
+    }
+
     /// The body of this name, given at `pointer`; a fault if there is none.
     fn body(&mut self, pointer: &str, name: &str) -> Option<&'a Body> {
         let body = self.document.bodies.get(name);

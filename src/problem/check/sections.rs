@@ -51,7 +51,7 @@ impl Checker<'_> {
     ) -> bool {
         self.stress_of_rigid(pointer, (name, elements));
         // A faulty structure has no mesh to look into.
-        if !self.findings.is_empty() {
+        if !self.sound() {
             return false;
         }
         let own = prepared(self.document, elements);

@@ -21,7 +21,7 @@ use super::schema::Document;
 use super::schema::modal::{Modal, ModalFrame, Source as Files, Units};
 use super::source::Source;
 use crate::structures::modal::craig_bampton::reduce;
-use crate::structures::modal::free_body::FreeBody;
+use crate::structures::modal::free_body::{FreeBody, NoFreeBody};
 use crate::structures::modal::interfaces::{Holding, Interface, NoReduction};
 use crate::structures::modal::loaded::{Loaded, Reduced};
 use crate::structures::modal::written::WrittenMatrix;
@@ -257,7 +257,15 @@ fn reduced(
         .map_err(|fault| {
             let expected = "stiffness and mass matrix of a free body in space";
             let hint = "write the matrices without supports, in the axes of the table of nodes";
-            document("source", fault.to_string(), expected, Some(hint))
+            match fault {
+                NoFreeBody::Indefinite { .. } => {
+                    let (key, file) = mass_file(&modal.source);
+                    let found = format!("in {file} {fault}");
+                    let expected = "a mass matrix without negative masses";
+                    at(&format!("{pointer}/{key}"), found, expected, None)
+                }
+                fault => document("source", fault.to_string(), expected, Some(hint)),
+            }
         })?;
     let modes = modal.modes.unwrap_or(MODES) as usize;
     let reduction = reduce(&free, &interfaces, &holding, modes).map_err(|failure| {
@@ -301,6 +309,14 @@ fn reduced(
             holding,
         }),
     }))
+}
+
+/// The key of the file with the mass matrix, and its name.
+fn mass_file(source: &Files) -> (&'static str, &str) {
+    match source {
+        Files::MatrixMarket { mass, .. } => ("source/matrix_market/mass", mass),
+        Files::Dmig { file, .. } | Files::StandardInput(file) => ("source/dmig/file", file),
+    }
 }
 
 /// Support of the axes; none if an interface that it names does not exist.

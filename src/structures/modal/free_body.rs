@@ -3,13 +3,15 @@
 //! An unknown is a displacement (component 0, 1, 2) or a rotation (3, 4, 5) of a node along or about the axes
 //! of the body. Unknowns without stiffness and mass are left out.
 
-use super::written::{Entry, WrittenMatrix};
-use crate::linalg::cholesky::{SymmetricPattern, fill_reducing_order};
+use super::written::{Entry, WrittenMatrix, deviation};
+use crate::linalg::cholesky::{SparseCholesky, SymmetricPattern, fill_reducing_order};
 use crate::math::Vec3;
 
 /// Forces of a rigid motion that the stiffness of a free body may have, relative to the forces of
 /// all its entries, in addition to the effect of rounding.
 const FREE: f64 = 1e-5;
+/// Negative mass of a motion relative to that of the diagonal, in addition to the effect of rounding.
+const NEGATIVE: f64 = 1e-6;
 /// Relative difference of the masses in three directions, in addition to the effect of rounding.
 const ONE_MASS: f64 = 1e-5;
 
@@ -58,6 +60,16 @@ pub(crate) enum NoFreeBody {
         /// "displacement along x".
         motion: &'static str,
         /// Remaining force, relative to that of the entries.
+        part: f64,
+    },
+    #[error(
+        "a mass matrix that is not positive: a motion that is largest in the {unknown} has {part:.1e} times the mass \
+         of its diagonal"
+    )]
+    Indefinite {
+        /// "displacement along x of node 3".
+        unknown: String,
+        /// xᵀ M x, relative to that of the diagonal of M.
         part: f64,
     },
     #[error("masses of {x:.6e}, {y:.6e} and {z:.6e} kg along x, y and z")]
@@ -178,10 +190,53 @@ impl FreeBody {
         self.nodes.iter().sum::<Vec3<f64>>() / self.nodes.len().max(1) as f64
     }
 
+    /// The motion of the most negative mass, and that mass relative to that of the diagonal of M; none if no
+    /// motion has a negative mass beyond rounding.
+    fn negative_mass(&self) -> Option<(Unknown, f64)> {
+        if self.unknowns.is_empty() {
+            return None;
+        }
+        let mut coupled = vec![false; self.unknowns.len()];
+        for j in 0..coupled.len() {
+            let beside = self.pattern.column(j).skip(1);
+            for (_, i) in beside.filter(|(at, _)| self.mass[*at] != 0.0) {
+                coupled[i] = true;
+                coupled[j] = true;
+            }
+        }
+        let mut values = self.mass.clone();
+        for (j, coupled) in coupled.into_iter().enumerate() {
+            let slot = self.pattern.slot(j, j)?;
+            // An unknown without mass.
+            if values[slot] == 0.0 && !coupled {
+                values[slot] = 1.0;
+            }
+        }
+        let failure = SparseCholesky::new(&self.pattern)
+            .factorise(&self.pattern, &values)
+            .err()?;
+        let x = &failure.direction;
+        let mut product = vec![0.0; x.len()];
+        self.pattern.multiply(&self.mass, x, &mut product);
+        let mass: f64 = x.iter().zip(&product).map(|(x, y)| x * y).sum();
+        let diagonal = (0..x.len()).filter_map(|j| {
+            let slot = self.pattern.slot(j, j)?;
+            Some(self.mass[slot] * x[j] * x[j])
+        });
+        let diagonal = diagonal.sum::<f64>().max(f64::MIN_POSITIVE);
+        let rounding = 3.0 * deviation(&self.pattern, &self.rounding[1], x);
+        let sizes = x.iter().map(|x| x.abs()).enumerate();
+        let (most, _) = sizes.max_by(|a, b| a.1.total_cmp(&b.1))?;
+        // A mass that is no number is that of entries of very different sizes.
+        let sound = mass >= -(NEGATIVE * diagonal + rounding);
+        (!sound).then(|| (self.unknowns[most], mass / diagonal))
+    }
+
     /// Checks that these can be the matrices of a free body; `name` tells a node.
     ///
     /// # Errors
-    /// [`NoFreeBody`]: a negative diagonal, supports, or masses that differ along the axes.
+    /// [`NoFreeBody`]: a negative diagonal, a mass matrix that is not positive, supports, or masses that differ
+    /// along the axes.
     pub(crate) fn check(&self, name: impl Fn(usize) -> String) -> Result<(), NoFreeBody> {
         let order = self.unknowns.len();
         let diagonal = |values: &[f64], j: usize| {
@@ -200,6 +255,14 @@ impl FreeBody {
                     return Err(NoFreeBody::Negative { unknown, value });
                 }
             }
+        }
+        if let Some((unknown, part)) = self.negative_mass() {
+            let unknown = format!(
+                "{} of node {}",
+                COMPONENTS[unknown.component],
+                name(unknown.node)
+            );
+            return Err(NoFreeBody::Indefinite { unknown, part });
         }
         let scale: Vec<f64> = (0..order)
             .map(|j| diagonal(&self.stiffness, j))

@@ -6,24 +6,18 @@
 //! RᵀMR: ∫dm, p_0 = ∫X dm, J;     RᵀMφ_I: p_I = ∫X_I dm, ∫X × X_I dm;     φ_IᵀMφ_J = tr S_IJ
 //! ```
 //!
-//! They are all that a slow rotation needs. The rest of S_IJ = ∫ X_I X_Jᵀ dm is the sum Σ m_ab x_aI x_bJᵀ over pairs
-//! of nodes, in which m_ab is the mean of the three translational entries of M. It is exact for lumped masses
-//! and for elements that interpolate all displacements alike. Cubic beams and rotary inertia make
-//! errors that fall with the square of the size of elements.
+//! They are all that a slow rotation needs. The rest of S_IJ = ∫ X_I X_Jᵀ dm is that of sums Σ m_ab x_aI x_bJᵀ over
+//! pairs of nodes, in which m_ab is the mean of the three translational entries of M, changed by
+//! [`super::second_moments`] to agree with the exact integrals. The sums are exact for lumped masses and for elements
+//! that interpolate all displacements alike. Cubic beams and rotary inertia make errors that fall with the square of
+//! the size of elements.
 
 use super::free_body::FreeBody;
 use super::imported::ImportedBody;
+use super::second_moments::{Known, SecondMoments};
 use crate::math::slices::dot;
 use crate::math::{Mat3, Vec3};
-
-/// Antisymmetric part of S that has ∫ X × X_I dm, as a vector: (S_12 − S_21, …).
-fn turning(s: &Mat3<f64>) -> Vec3<f64> {
-    Vec3::new(
-        s[(1, 2)] - s[(2, 1)],
-        s[(2, 0)] - s[(0, 2)],
-        s[(0, 1)] - s[(1, 0)],
-    )
-}
+use nalgebra::DMatrix;
 
 /// Pairs of nodes with their mass m_ab, each ordered pair once or in parts.
 fn nodal_masses(body: &FreeBody) -> Vec<(usize, usize, f64)> {
@@ -81,7 +75,7 @@ pub(crate) fn integrals(body: &FreeBody, shapes: &[Vec<f64>]) -> ImportedBody {
         all
     };
     let moved: Vec<Vec<Vec3<f64>>> = shapes.iter().map(positions).collect();
-    let weighted = |all: &Vec<Vec3<f64>>| {
+    let weighted = |all: &[Vec3<f64>]| {
         let mut sums = vec![Vec3::zeros(); all.len()];
         for &(a, b, mass) in &nodal {
             sums[a] += all[b] * mass;
@@ -98,37 +92,61 @@ pub(crate) fn integrals(body: &FreeBody, shapes: &[Vec<f64>]) -> ImportedBody {
         let first = of.start;
         Vec3::from_fn(|k, _| dot(&rigid[first + k], x))
     };
-    let mut with_position = Vec::with_capacity(m);
-    let mut products = Vec::with_capacity(m * (m + 1) / 2);
-    for i in 0..m {
-        let sums = weighted(&moved[i]);
-        let mut s = outer(&body.nodes, &sums);
-        let missing = (along(&by_shape[i], 3..6) - turning(&s)) * 0.5;
-        // (S_12 − S_21, …) of the added matrix is twice `missing`.
-        s -= missing.cross_matrix();
-        with_position.push(s);
-    }
-    for i in 0..m {
-        let sums = weighted(&moved[i]);
-        for j in i..m {
-            // Σ m_ab x_aI x_bJᵀ with a symmetric m.
-            let mut s = outer(&sums, &moved[j]);
-            let missing = dot(&shapes[i], &by_shape[j]) - s.trace();
-            s += Mat3::from_diagonal_element(missing / 3.0);
-            products.push(s);
-        }
-    }
+    let mass = (t(0, 0) + t(1, 1) + t(2, 2)) / 3.0;
+    let centre = Vec3::new(
+        0.5 * (t(5, 1) - t(4, 2)),
+        0.5 * (t(3, 2) - t(5, 0)),
+        0.5 * (t(4, 0) - t(3, 1)),
+    );
+    let inertia = Mat3::from_fn(|i, j| t(3 + i, 3 + j));
+    let moments: Vec<Vec3<f64>> = by_shape.iter().map(|x| along(x, 0..3)).collect();
+    // Sums over pairs of nodes, about the means by these sums.
+    let total: f64 = nodal.iter().map(|pair| pair.2).sum();
+    let total = total.max(f64::MIN_POSITIVE);
+    let mean = |sums: &[Vec3<f64>]| sums.iter().sum::<Vec3<f64>>();
+    let by_places = weighted(&body.nodes);
+    let by_moved: Vec<Vec<Vec3<f64>>> = moved.iter().map(|x| weighted(x)).collect();
+    let about = |sums: &[Vec3<f64>], x: &[Vec3<f64>], means: [Vec3<f64>; 2]| {
+        outer(sums, x) - means[0] * means[1].transpose() / total
+    };
+    let at_rest = mean(&by_places);
+    let means: Vec<Vec3<f64>> = by_moved.iter().map(|sums| mean(sums)).collect();
+    let pairs = (0..m * m).map(|at| {
+        let (i, j) = (at / m, at % m);
+        about(&by_moved[i], &moved[j], [means[i], means[j]])
+    });
+    let sums = SecondMoments {
+        places: about(&by_places, &body.nodes, [at_rest; 2]),
+        with_places: (0..m)
+            .map(|i| about(&by_places, &moved[i], [at_rest, means[i]]))
+            .collect(),
+        shapes: pairs.collect(),
+    };
+    let known = Known {
+        inertia: inertia
+            - (Mat3::from_diagonal_element(centre.norm_squared()) - centre * centre.transpose())
+                / mass,
+        turning: (by_shape.iter().zip(&moments))
+            .map(|(x, p)| along(x, 3..6) - centre.cross(p) / mass)
+            .collect(),
+        mass: DMatrix::from_fn(m, m, |i, j| {
+            let both = dot(&shapes[i], &by_shape[j]) + dot(&shapes[j], &by_shape[i]);
+            0.5 * both - moments[i].dot(&moments[j]) / mass
+        }),
+    };
+    let fitted = sums.fitted(&known);
+    let upper = (0..m).flat_map(|i| (i..m).map(move |j| (i, j)));
     ImportedBody {
-        mass: (t(0, 0) + t(1, 1) + t(2, 2)) / 3.0,
-        centre: Vec3::new(
-            0.5 * (t(5, 1) - t(4, 2)),
-            0.5 * (t(3, 2) - t(5, 0)),
-            0.5 * (t(4, 0) - t(3, 1)),
-        ),
-        inertia: Mat3::from_fn(|i, j| t(3 + i, 3 + j)),
-        static_moments: by_shape.iter().map(|x| along(x, 0..3)).collect(),
-        with_position,
-        products,
+        with_position: (fitted.with_places.iter().zip(&moments))
+            .map(|(s, p)| s + centre * p.transpose() / mass)
+            .collect(),
+        products: upper
+            .map(|(i, j)| fitted.shapes[i * m + j] + moments[i] * moments[j].transpose() / mass)
+            .collect(),
+        mass,
+        centre,
+        inertia,
+        static_moments: moments,
         stiffness: vec![0.0; m * m],
         damping: vec![0.0; m * m],
         points: Vec::new(),

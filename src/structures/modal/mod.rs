@@ -9,6 +9,7 @@ pub(crate) mod imported;
 pub(crate) mod interfaces;
 pub(crate) mod loaded;
 mod mass_integrals;
+mod second_moments;
 pub(crate) mod sections;
 mod shapes;
 pub(crate) mod written;

@@ -132,6 +132,12 @@ pub fn reduced<S: Scalar>(
     pair
 }
 
+/// −(1/ρ) ln Σ e^{−ρ f_k} of these frequencies \[Hz\], with ρ \[s\].
+pub(crate) fn lowest_of(frequencies: &[f64], rho: f64) -> f64 {
+    let negative: Vec<f64> = frequencies.iter().map(|f| -f).collect();
+    -SoftMax::new(&negative, |_| 1.0, rho).ks
+}
+
 /// −(1/ρ) ln Σ e^{−ρ f_k} over the elastic modes, with ρ \[s\] (Kreisselmeier & Steinhauser 1979). As many
 /// modes are taken as have a weight above rounding, so nothing jumps where modes meet, swap or come in.
 ///

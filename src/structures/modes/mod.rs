@@ -13,6 +13,7 @@ pub use frequencies::{
     LowestFrequency, eigenvalue_gradient, frequency_gradient, lowest_frequency, reduced,
 };
 
+pub(crate) use frequencies::lowest_of;
 pub(crate) use lanczos::{Basis, Operator, largest};
 pub(crate) use search::{Pencil, PencilFailure};
 

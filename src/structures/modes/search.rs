@@ -294,6 +294,9 @@ impl Pencil {
             asked: count,
             found: 0,
         };
+        if count == 0 {
+            return Err(failure);
+        }
         let lower = Cholesky::new(m).ok_or(failure.clone())?.l();
         let first = lower.solve_lower_triangular(&k).ok_or(failure.clone())?;
         let second = lower

@@ -86,6 +86,7 @@ mod beams;
 mod elements;
 mod loads;
 mod modal;
+mod mutations;
 mod starts;
 
 faults! {
