@@ -116,7 +116,7 @@ impl<'a> KnownEvaluations<'a> {
     pub(crate) fn steps(&self) -> Option<KeptSteps> {
         let Choice { steps, refreshes } = &self.choices[self.in_use?];
         Some(KeptSteps {
-            method: Method::adaptive(&steps.method)?,
+            method: Method::named(&steps.method)?,
             reason: steps.method_reason.clone(),
             grid: steps.grid(),
             refreshes: *refreshes,
@@ -280,6 +280,8 @@ impl<'a> KnownEvaluations<'a> {
                 reason,
                 cells: (grid.as_ref()).map_or_else(Vec::new, |grid| grid.all_cells().to_vec()),
                 left_out: grid.as_ref().map_or_else(Vec::new, rows_left_out),
+                kinks: (grid.as_ref()).map_or_else(Vec::new, |grid| grid.kinks().to_vec()),
+                equal: grid.as_ref().is_some_and(Grid::is_equal),
                 ends: grid.map_or_else(Vec::new, |grid| grid.ends().to_vec()),
             };
             self.take(design, steps);
@@ -359,6 +361,8 @@ mod tests {
                 reason: "first design".into(),
                 method_reason: None,
                 ends: ends.to_vec(),
+                kinks: Vec::new(),
+                equal: false,
                 cells: Vec::new(),
                 left_out: Vec::new(),
             }),
