@@ -87,7 +87,7 @@ impl<'a> Sensitivity<'a> {
         if let Some(joint) = &mut self.joint {
             by_time += joint.pull_back(&lambda, (y, v), model);
         }
-        self.by_duration += run.instants[k] * by_time;
+        self.by_duration += run.grid.rate(run.instants[k]) * by_time;
         true
     }
 

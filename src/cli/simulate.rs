@@ -126,7 +126,7 @@ fn as_json(
         }
     }
     let mut warnings: Vec<String> = simulation.warning.iter().cloned().collect();
-    warnings.extend(simulation.at.kinks(problem, 0..names.len()));
+    warnings.extend(simulation.at.doubts(problem, 0..names.len()));
     let first = &simulation.observations[0];
     let (position, velocity) = simulation.constraint_drift();
     let mut all = json!({
@@ -189,7 +189,7 @@ fn summary(problem: &Problem, simulation: &Simulation) -> String {
     }
     for warning in simulation
         .at
-        .kinks(problem, 0..problem.function_names.len())
+        .doubts(problem, 0..problem.function_names.len())
     {
         let _ = writeln!(text, "  warning: {warning}");
     }

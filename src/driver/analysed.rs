@@ -263,28 +263,13 @@ impl Simulated {
     pub(super) fn warnings(&self, problem: &Problem, used: &[usize]) -> Vec<String> {
         match self {
             Self::Motion(simulation) => {
-                let kinks = simulation.at.kinks(problem, used.iter().copied());
-                simulation.warning.iter().cloned().chain(kinks).collect()
+                let doubts = simulation.at.doubts(problem, used.iter().copied());
+                simulation.warning.iter().cloned().chain(doubts).collect()
             }
             Self::Statics(at) => statics::error::doubts(problem, at, used)
                 .into_iter()
                 .collect(),
         }
-    }
-
-    /// A warning of a peak that samples do not resolve.
-    pub(super) fn narrow_peak(&self, problem: &Problem, f: usize) -> Option<String> {
-        let Self::Motion(simulation) = self else {
-            return None;
-        };
-        let sharpness = simulation.at.function(f).peak_sharpness;
-        (sharpness > 1.0).then(|| {
-            format!(
-                "the peak of \"{}\" is narrower than the distance of samples (rho x curvature x h^2 \
-                 = {sharpness:.1}): take more samples or lower rho",
-                problem.function_names[f]
-            )
-        })
     }
 
     /// How a motion was integrated.

@@ -254,8 +254,10 @@ fn settings(problem: &Problem, at: &Evaluated) -> Option<Settings> {
         method: at.run.method,
         reason: None,
         grid: match problem.simulation.spacing {
-            Spacing::Steps(_) => None,
-            Spacing::Tolerance(_) | Spacing::Frozen(_) => Some(at.run.grid.clone()),
+            Spacing::Steps(_) if !at.run.grid.is_equal() => None,
+            Spacing::Steps(_) | Spacing::Tolerance(_) | Spacing::Frozen(_) => {
+                Some(at.run.grid.clone())
+            }
         },
         refreshes: 0,
     });

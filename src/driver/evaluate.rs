@@ -1,5 +1,6 @@
 //! Functions and gradients of a problem at a design: one simulation, one backward march.
 
+use super::event;
 use super::integration::{Integration, Refresh};
 use crate::adjoint;
 use crate::functions::rest::{passes_rest, vanishing};
@@ -138,25 +139,34 @@ impl Evaluated {
         ))
     }
 
-    /// A warning for each of the functions `which` that reduces a speed through its kink at rest, or whose norm is
-    /// zero.
-    pub(crate) fn kinks(
+    /// Warnings of the functions `which`: of a speed that passes through its kink at rest, of a norm that is
+    /// zero, and of a peak that the samples do not resolve.
+    pub(crate) fn doubts(
         &self,
         problem: &Problem,
         which: impl Iterator<Item = usize>,
     ) -> Vec<String> {
-        let warn = |f: usize| {
-            let function = &self.scene.functions[f];
-            let Some(time) = passes_rest(function, &self.scene.model, &self.run) else {
-                return self.vanishes(problem, f, ALMOST_ZERO);
-            };
-            Some(format!(
-                "the speed of \"{}\" passes zero at t = {time:.4} s, where it has a kink: take \
-                 \"speed_squared\"",
-                problem.function_names[f]
-            ))
+        let doubts = |f: usize| {
+            let name = &problem.function_names[f];
+            let rests = passes_rest(&self.scene.functions[f], &self.scene.model, &self.run);
+            let sharpness = self.function(f).peak_sharpness;
+            let kink = rests.map(|time| {
+                format!(
+                    "the speed of \"{name}\" passes zero at t = {time:.4} s, where it has a kink: take \
+                     \"speed_squared\""
+                )
+            });
+            let narrow = (sharpness > 1.0).then(|| {
+                format!(
+                    "the peak of \"{name}\" is narrower than the distance of samples (rho times the \
+                     change of the quantity beside it is {sharpness:.1}): take more samples or steps, \
+                     a tolerance, or a lower rho"
+                )
+            });
+            let kink = kink.or_else(|| self.vanishes(problem, f, ALMOST_ZERO));
+            kink.into_iter().chain(narrow)
         };
-        which.filter_map(warn).collect()
+        which.flat_map(doubts).collect()
     }
 
     /// A function of interest, by index.
@@ -207,10 +217,11 @@ impl Evaluated {
                 let with_event: Vec<usize> =
                     once.iter().copied().chain([self.scene.event()]).collect();
                 let mut found = adjoint::gradients(&self.scene, &self.run, &with_event)?;
-                let event = found.gradients.pop();
-                for gradient in &mut found.gradients {
-                    *gradient =
-                        along_event(gradient, event.as_ref().expect("the event was asked for"));
+                if let Some(event) = found.gradients.pop() {
+                    event::refuse_touch(&self.scene, &self.run, event.duration)?;
+                    for gradient in &mut found.gradients {
+                        *gradient = along_event(gradient, &event);
+                    }
                 }
                 found
             }

@@ -1,7 +1,7 @@
 //! Runs that end at an event: the duration T at which a quantity reaches its value, g(T) = c.
 //!
-//! The steps keep their fractions of T, so the whole discrete motion, with g at its end, is a
-//! smooth function of T and of the design. The secant method finds the root to round-off. The last
+//! The steps stretch with T (after the last kink of loads and drives), so the whole discrete motion,
+//! with g at its end, is a smooth function of T and of the design. The secant method finds the root to round-off. The last
 //! step then ends exactly there, and
 //!
 //! ```text
@@ -10,6 +10,7 @@
 //!
 //! with all partial derivatives by the adjoint of one run.
 
+use crate::functions::peak::crossing;
 use crate::functions::{Scene, TerminalEvent};
 use crate::integrate::{IntegrationFailure, Settings, Trajectory, WorkCounts, simulate};
 use crate::math::scalar::COMPLEX_STEP;
@@ -21,6 +22,16 @@ const RUNS: usize = 40;
 const ROUND_OFF: f64 = 4.0 * f64::EPSILON;
 /// A change below this that no longer shrinks is round-off as well.
 const SETTLED: f64 = 1e-11;
+/// Round-off of the quantity, relative to its largest distance from its value.
+const NOISE: f64 = 64.0 * f64::EPSILON;
+/// It touches its value if it comes so near and turns back, relative to that distance; and if it changes
+/// so slowly, relative to that distance in the time of the run.
+const TOUCH: f64 = 1e-9;
+const FLAT: f64 = 1e-6;
+/// Events nearer than this part of the run are one.
+const SAME: f64 = 1e-9;
+/// An event on kept steps must not turn back within this part of the longest duration.
+const CLOSE: f64 = 1e-3;
 /// Longest step of the secant method, relative to the duration.
 const LONGEST: f64 = 0.2;
 
@@ -31,43 +42,84 @@ pub(crate) enum Admit {
     Late,
     /// Those within it.
     InTime,
-    /// Those that come before its end by this part of it. A touch that other samples would miss
-    /// does not count: steps chosen for this design alone must find the event too.
+    /// Those that come before its end by this part of it, and are no touch that other steps would
+    /// miss: steps chosen for this design alone must find the event too.
     Certain {
         /// The part.
         margin: f64,
     },
 }
 
-/// Approximate time of the event: the first change of sign of g − c in a run over the longest
-/// duration, interpolated.
+/// Time of the event: the first change of sign of g − c in a run over the longest duration, between
+/// its samples too.
 ///
 /// # Errors
-/// [`IntegrationFailure::NotReached`].
+/// [`IntegrationFailure::NotReached`], or [`IntegrationFailure::Touches`].
 pub(crate) fn first(
     until: &TerminalEvent<f64>,
     run: &Trajectory<f64>,
     gaps: &[f64],
 ) -> Result<f64, IntegrationFailure> {
-    let start = side(gaps);
-    let crossed = (1..gaps.len()).find(|&k| gaps[k] * start <= 0.0 && gaps[k - 1] != 0.0);
-    let Some(k) = crossed else {
-        let nearest = gaps.iter().fold(f64::INFINITY, |m: f64, g| m.min(g.abs()));
-        return Err(IntegrationFailure::NotReached {
+    let noise = noise(gaps);
+    match crossing(run, gaps, (side(gaps, noise), noise)) {
+        Ok(at) => Ok(run.duration * at),
+        // It comes at the very end.
+        Err((nearest, at)) if nearest <= noise && at >= 1.0 => Ok(run.duration),
+        Err((nearest, at)) if nearest <= TOUCH * largest(gaps) && at < 1.0 => {
+            Err(IntegrationFailure::Touches {
+                quantity: until.describe(),
+                value: until.value,
+                time: run.duration * at,
+            })
+        }
+        Err((nearest, _)) => Err(IntegrationFailure::NotReached {
             quantity: until.describe(),
             value: until.value,
             nearest,
             waited: run.duration,
-        });
-    };
-    let (before, after) = (gaps[k - 1], gaps[k]);
-    let (t0, t1) = (run.time(k - 1), run.time(k));
-    Ok(t0 + (t1 - t0) * before / (before - after))
+        }),
+    }
+}
+
+/// The largest |g − c|.
+fn largest(gaps: &[f64]) -> f64 {
+    gaps.iter().fold(0.0, |m, g| m.max(g.abs()))
+}
+
+/// Round-off of g − c.
+fn noise(gaps: &[f64]) -> f64 {
+    NOISE * largest(gaps)
 }
 
 /// The sign of g − c at the start, or just after it.
-fn side(gaps: &[f64]) -> f64 {
-    gaps.iter().find(|g| **g != 0.0).map_or(1.0, |g| g.signum())
+fn side(gaps: &[f64], noise: f64) -> f64 {
+    gaps.iter()
+        .find(|g| g.abs() > noise)
+        .map_or(1.0, |g| g.signum())
+}
+
+/// Fails if the run of `scene` ends where the quantity of its event only touches its value: at the
+/// rate ∂g/∂T = `rate` it would take many times the run to change as much as it did.
+///
+/// # Errors
+/// [`IntegrationFailure::Touches`].
+pub(crate) fn refuse_touch(
+    scene: &Scene<f64>,
+    run: &Trajectory<f64>,
+    rate: f64,
+) -> Result<(), IntegrationFailure> {
+    let Some(until) = &scene.until else {
+        return Ok(());
+    };
+    let change = largest(&until.gaps(&scene.model, run));
+    match rate.abs() * run.duration > FLAT * change {
+        true => Ok(()),
+        false => Err(IntegrationFailure::Touches {
+            quantity: until.describe(),
+            value: until.value,
+            time: run.duration,
+        }),
+    }
 }
 
 /// The run of `scene` that ends at its event, with steps that keep their fractions. Starts near
@@ -114,17 +166,18 @@ pub(crate) fn settle(
             || next.abs() <= ROUND_OFF * duration
             || (next.abs() <= SETTLED * duration && next.abs() >= 0.5 * change);
         if done {
-            let start = side(&gaps);
-            if gaps[..last].iter().any(|g| g * start < 0.0) {
-                // It also came earlier, as finer samples show.
-                duration = first(&until, &run, &gaps)?;
+            let noise = noise(&gaps);
+            if let Ok(at) = crossing(&run, &gaps, (side(&gaps, noise), noise))
+                && at < 1.0 - SAME
+            {
+                // It also came earlier.
+                duration *= at;
                 (known, change) = (None, f64::INFINITY);
                 continue;
             }
             let admitted = match admit {
                 Admit::Late => true,
                 Admit::InTime => duration <= waited,
-                // The first search uses the samples of the whole time.
                 Admit::Certain { margin } => {
                     duration <= waited * (1.0 - margin) && !touches(&gaps, &run, waited)
                 }
@@ -157,7 +210,10 @@ fn touches(gaps: &[f64], run: &Trajectory<f64>, waited: f64) -> bool {
     let (before, now) = ((b - a) / first, (c - b) / second);
     // The slope changes at a constant rate from the middle of the last interval on.
     let bend = 2.0 * (before - now) / (first + second);
-    let spacing = waited / (run.shown().len() - 1).max(1) as f64;
+    let spacing = match run.has_cells {
+        true => waited * CLOSE,
+        false => waited / last as f64,
+    };
     now * bend > 0.0 && now.abs() < spacing * bend.abs()
 }
 

@@ -8,7 +8,7 @@ use crate::functions::resolution::{Resolution, resolution};
 use crate::functions::{Function, Reduction, Scene};
 use crate::integrate::{
     Chosen, Grid, IntegrationFailure, Limits, LinearSolver, Method, Samples, Settings, Spacing,
-    Trajectory, choice, simulate, simulate_by,
+    Trajectory, choice, has_kinks, simulate, simulate_by,
 };
 use crate::problem::Problem;
 
@@ -19,13 +19,16 @@ const REFRESH: f64 = 10.0;
 /// Error of sums over the motion for which cells are chosen, relative to the tolerance of the
 /// steps.
 const OF_SUMS: f64 = 0.1;
-/// Largest number of choices of cells for one motion.
+/// Largest number of choices of cells, or of steps up to an event, for one motion.
 const ROUNDS: usize = 8;
 /// An event on kept steps counts only if it comes before the longest duration by this part,
 /// relative to the tolerance and absolute. Otherwise steps of the design itself decide.
 const LATE: f64 = 1e3;
 const LEAST_LATE: f64 = 1e-9;
 const MOST_LATE: f64 = 0.05;
+
+/// Reason of a choice after the end has moved past a kink.
+const PASSED: &str = "the end of the motion has passed an instant of a table";
 
 /// Reason of the first choice of steps.
 pub(crate) const FIRST_DESIGN: &str = "first design";
@@ -95,19 +98,30 @@ impl Integration {
         let mut summed = asked.map_or(all, <[usize]>::to_vec);
         summed.retain(|&f| looks_at_the_whole(&scene.functions[f]));
         let shown = simulation.samples.unwrap_or(SAMPLES);
-        let seen = scene.until.is_some() || asked.is_none();
+        // An event is looked for inside every step, whatever the samples.
+        let (seen, ends) = (asked.is_none(), scene.until.is_some());
+        let sums = !summed.is_empty();
+        summed.extend(ends.then(|| scene.event()));
         let samples = match (simulation.samples, &simulation.spacing) {
-            (Some(samples), Spacing::Steps(_)) => Samples::Uniform(samples),
-            (None, Spacing::Steps(_)) if seen || !summed.is_empty() => Samples::StepEnds,
+            (Some(samples), Spacing::Steps(_)) if sums || !ends => Samples::Uniform(samples),
+            (Some(samples), Spacing::Steps(_)) => Samples::Quadrature(samples),
+            (None, Spacing::Steps(_)) if seen || sums || ends => Samples::StepEnds,
             (None, Spacing::Steps(_)) => Samples::Uniform(1),
             _ if !summed.is_empty() => Samples::Quadrature(if seen { shown } else { 0 }),
             _ if seen => Samples::Uniform(shown),
             _ => Samples::Uniform(1),
         };
+        // Steps that end at kinks do so at every duration, so that values are smooth in it.
+        let spacing = match simulation.spacing {
+            Spacing::Steps(steps) if problem.end_moves() && has_kinks(&scene.model) => {
+                Spacing::Frozen(Grid::between(steps, &[]))
+            }
+            _ => simulation.spacing.clone(),
+        };
         Self {
             method: simulation.method,
             solver: simulation.solver,
-            spacing: simulation.spacing.clone(),
+            spacing,
             samples,
             limits: simulation.limits.clone(),
             shown,
@@ -249,6 +263,7 @@ impl Integration {
             (None, _) => FIRST_DESIGN.into(),
             (Some((settings, _)), Spacing::Tolerance(tolerance)) => {
                 match self.run(scene, settings, settled) {
+                    Ok(run) if passes_kinks(settings, &run) => PASSED.into(),
                     Ok(run) if run.step_error <= REFRESH * tolerance => {
                         let Resolution { error, cells } = self.resolution(scene, &run);
                         // More cells than allowed do not improve a sum that is not smooth.
@@ -274,6 +289,7 @@ impl Integration {
                     | IntegrationFailure::Unstable { .. }),
                 ) if self.method.is_none() => failure.to_string(),
                 Err(failure @ IntegrationFailure::NotReached { .. }) => failure.to_string(),
+                Ok(run) if passes_kinks(settings, &run) => PASSED.into(),
                 found => return Ok((self.keep(scene, found?), None)),
             },
         };
@@ -285,16 +301,24 @@ impl Integration {
             let gaps = until.gaps(&scene.model, &all);
             scene.duration = event::first(until, &all, &gaps)?;
         }
-        let guess = scene.duration;
+        let mut guess = scene.duration;
+        let mut chosen = simulate_by(&scene.model, guess, self.method, &wanted)?;
+        if scene.until.is_some() {
+            for _ in 0..ROUNDS {
+                scene.duration = waited;
+                chosen.run = event::settle(scene, &chosen.settings, guess, Admit::InTime)?;
+                if !passes_kinks(&chosen.settings, &chosen.run) {
+                    break;
+                }
+                guess = chosen.run.duration;
+                chosen = simulate_by(&scene.model, guess, self.method, &wanted)?;
+            }
+        }
         let Chosen {
-            mut run,
+            run,
             settings,
             reason,
-        } = simulate_by(&scene.model, guess, self.method, &wanted)?;
-        if scene.until.is_some() {
-            scene.duration = waited;
-            run = event::settle(scene, &settings, guess, Admit::InTime)?;
-        }
+        } = chosen;
         let (run, settings) = self.resolved(scene, run, settings)?;
         let grid = match &settings.spacing {
             Spacing::Frozen(grid) => Some(grid.clone()),
@@ -414,6 +438,14 @@ impl Integration {
     fn keep(&mut self, scene: &Scene<f64>, run: Trajectory<f64>) -> Trajectory<f64> {
         self.event = scene.until.as_ref().map(|_| run.duration);
         run
+    }
+}
+
+/// Whether a run on kept steps ends on another side of a kink than the run that chose them.
+fn passes_kinks(settings: &Settings, run: &Trajectory<f64>) -> bool {
+    match &settings.spacing {
+        Spacing::Frozen(grid) => grid.kinks().len() != run.grid.kinks().len(),
+        Spacing::Steps(_) | Spacing::Tolerance(_) => false,
     }
 }
 

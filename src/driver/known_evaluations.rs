@@ -318,6 +318,8 @@ pub(super) fn steps_in_use(
         reason,
         cells: grid.map_or_else(Vec::new, |grid| grid.all_cells().to_vec()),
         left_out: grid.map_or_else(Vec::new, rows_left_out),
+        kinks: grid.map_or_else(Vec::new, |grid| grid.kinks().to_vec()),
+        equal: grid.is_some_and(Grid::is_equal),
         ends: grid.map_or_else(Vec::new, |grid| grid.ends().to_vec()),
     }
 }
@@ -325,7 +327,7 @@ pub(super) fn steps_in_use(
 /// Recorded steps, after so many other choices.
 pub(super) fn kept(steps: &StepsInUse, refreshes: usize) -> Option<KeptSteps> {
     Some(KeptSteps {
-        method: Method::adaptive(&steps.method)?,
+        method: Method::named(&steps.method)?,
         reason: steps.method_reason.clone(),
         grid: steps.grid(),
         refreshes,
@@ -382,6 +384,8 @@ mod tests {
                 reason: "first design".into(),
                 method_reason: None,
                 ends: ends.to_vec(),
+                kinks: Vec::new(),
+                equal: false,
                 cells: Vec::new(),
                 left_out: Vec::new(),
             }),

@@ -124,7 +124,6 @@ pub(super) fn record(
         lower_bounds: bounds(&outcome.multipliers.lower_bounds),
         upper_bounds: bounds(&outcome.multipliers.upper_bounds),
     };
-    warnings.extend(end.and_then(|end| end.narrow_peak(problem, objective.function)));
     warnings.extend(notes_of_start(problem, &problem.start()));
     if let Some(end) = end {
         let constrained = problem.constraints.iter().map(|c| c.function);

@@ -59,7 +59,12 @@ pub(super) fn of_long(
         reason: chosen.reason,
         run: chosen.run,
     };
-    if let Spacing::Steps(steps) = wanted.spacing {
+    let given = match &wanted.spacing {
+        Spacing::Steps(steps) => Some(*steps),
+        Spacing::Frozen(grid) => Some(grid.steps()),
+        Spacing::Tolerance(_) => None,
+    };
+    if let Some(steps) = given {
         if steps <= most {
             return Ok(None);
         }

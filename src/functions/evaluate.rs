@@ -7,13 +7,16 @@ use super::multipliers::{JointMultipliers, Rows};
 use super::peak::{self, Maximum, Point};
 use super::snapshot::Snapshot;
 use super::turning::turns;
-use crate::integrate::{Trajectory, quadrature};
+use crate::integrate::Trajectory;
 use crate::linalg::SolveScalar;
 use crate::math::Complex64;
 use crate::math::soft_max::{Bound, SoftMax};
 use crate::model::Model;
 use crate::system::Numbering;
 use std::ops::RangeInclusive;
+
+/// Below this sharpness the samples resolve a peak.
+const COARSE: f64 = 0.3;
 
 /// A function's value over a run, with data for reports.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -22,8 +25,9 @@ pub(crate) struct Evaluated<S> {
     pub value: S,
     /// For an aggregate: the largest value over the motion, and over the points of the quantity if it has some.
     pub maximum: Option<Maximum>,
-    /// For an aggregate over equally spaced samples: ρ κ h², with the curvature κ at the peak and
-    /// the distance h of the samples. Above about one the samples do not resolve the peak.
+    /// For an aggregate over samples that do not adapt to it: ρ κ h² or ρ s h, whichever is larger, with
+    /// the curvature κ and the slope s at the peak and the distance h of the samples. Above about one
+    /// the samples do not resolve the peak.
     pub peak_sharpness: f64,
 }
 
@@ -135,16 +139,31 @@ fn reduce<S: SolveScalar>(
                 },
                 _ => soft.induced_exponential(&values),
             };
-            let k = soft.peak.clamp(1, run.last().max(2) - 1);
-            // Nodes of cells have unequal distances, and their number adapts to the peak.
-            let even = quadrature::order(&run.instants) > 2;
-            let bend = values.get(k + 1).filter(|_| even).map_or(0.0, |next| {
-                (next.re() - 2.0 * values[k].re() + values[k - 1].re()).abs()
-            });
+            // The number of nodes of cells adapts to the peak.
+            let k = soft.peak;
+            let near = |from: usize, to: usize| Some(values.get(to)?.re() - values.get(from)?.re());
+            let before = k.checked_sub(1).and_then(|before| near(k, before));
+            let (before, after) = (before.unwrap_or(0.0), near(k, k + 1).unwrap_or(0.0));
+            let bend = match k == 0 || k == run.last() {
+                true => 0.0,
+                false => before + after,
+            };
+            // The soft maximum over turning points needs no integral.
+            let slope = match reduction {
+                Reduction::Ks {
+                    bound: Bound::Above,
+                    ..
+                } => 0.0,
+                _ => before.abs().max(after.abs()),
+            };
+            let sharpness = match run.has_cells {
+                true => 0.0,
+                false => rho * bend.abs().max(slope),
+            };
             Evaluated {
                 value,
                 maximum: Some(peak::maximum(run, &largest)),
-                peak_sharpness: rho * bend,
+                peak_sharpness: sharpness,
             }
         }
     }
@@ -168,9 +187,38 @@ pub(super) fn turning<S: SolveScalar>(
     let count = |i: usize| {
         let before = sign(i == 0 || rises(i - 1));
         let after = sign(i != last && rises(i));
-        0.5 * (before - after)
+        S::from(0.5 * (before - after))
     };
     (SoftMax::new(&heights, count, rho), points)
+}
+
+/// The value of an integral aggregate whose samples do not resolve its peak (see
+/// [`Evaluated::peak_sharpness`]), from the polynomials between them; `None` for other functions.
+pub(crate) fn between_samples(
+    function: &Function<f64>,
+    model: &Model<f64>,
+    run: &Trajectory<f64>,
+) -> Option<f64> {
+    let Function::Reduced { instant, reduction } = function else {
+        return None;
+    };
+    let rho = match *reduction {
+        Reduction::Ks {
+            rho,
+            bound: Bound::Below,
+        }
+        | Reduction::InducedExponential { rho } => rho,
+        Reduction::Ks { .. } | Reduction::Final | Reduction::Integral => return None,
+    };
+    if function.evaluate(model, run).peak_sharpness < COARSE {
+        return None;
+    }
+    let values = sample(instant, &turns(instant.watched_rotation(), run), model, run);
+    let [sum, moment, top] = peak::exponential_integrals(run, &values, rho);
+    Some(match reduction {
+        Reduction::InducedExponential { .. } => top + moment / sum,
+        _ => top + sum.ln() / rho,
+    })
 }
 
 /// The largest range without the gate, at instants at which the gate is more than half open; `None`

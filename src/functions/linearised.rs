@@ -34,6 +34,14 @@ struct WeightedFlight {
     cot: [f64; 5],
 }
 
+/// The derivative in the duration through the weights w of a mean over the motion, whose derivatives
+/// in them, times w, are `by`. Weights before the last kink shrink as the motion gets longer.
+fn by_weights(run: &Trajectory<f64>, by: impl Fn(usize) -> f64) -> f64 {
+    let weighed = (0..=run.last()).filter(|&k| run.weights[k] != run.moving[k]);
+    let change = |k: usize| by(k) * (run.moving[k] / run.weights[k] - 1.0) / run.duration;
+    weighed.map(change).sum()
+}
+
 impl<'a> Linearised<'a> {
     /// Linearises `function` about a run of `model`.
     pub(crate) fn new(
@@ -57,10 +65,8 @@ impl<'a> Linearised<'a> {
                     Reduction::Final => instants.map(last).collect(),
                     Reduction::Integral => {
                         let values = sample(instant, &turns, model, run);
-                        this.by_duration = instants
-                            .clone()
-                            .map(|k| values[k] * run.quadrature_weight(k))
-                            .sum();
+                        this.by_duration =
+                            instants.clone().map(|k| values[k] * run.moving[k]).sum();
                         let duration = run.time(run.last());
                         instants
                             .map(|k| duration * run.quadrature_weight(k))
@@ -70,7 +76,9 @@ impl<'a> Linearised<'a> {
                         let values = sample(instant, &turns, model, run);
                         match bound {
                             Bound::Below => {
-                                SoftMax::new(&values, |k| run.quadrature_weight(k), rho).weights
+                                let soft = SoftMax::new(&values, |k| run.quadrature_weight(k), rho);
+                                this.by_duration = by_weights(run, |k| soft.weights[k] / rho);
+                                soft.weights
                             }
                             Bound::Above => {
                                 let (soft, points) = turning(&values, run, rho);
@@ -88,6 +96,8 @@ impl<'a> Linearised<'a> {
                         let values = sample(instant, &turns, model, run);
                         let soft = SoftMax::new(&values, |k| run.quadrature_weight(k), rho);
                         let mean = soft.induced_exponential(&values);
+                        this.by_duration =
+                            by_weights(run, |k| soft.weights[k] * (values[k] - mean));
                         let by = |k: usize| soft.weights[k] * (1.0 + rho * (values[k] - mean));
                         instants.map(by).collect()
                     }
@@ -143,6 +153,7 @@ impl<'a> Linearised<'a> {
         let mut by_range: Vec<f64> = weighted
             .map(|(k, &w)| if w > 0.0 { w * away(k) } else { 0.0 })
             .collect();
+        self.by_duration = by_weights(run, |k| by_range[k]);
         // Their sum vanishes except for the round-off of the mean, which ρ dR would magnify.
         let sum: f64 = by_range.iter().sum();
         for (by, w) in by_range.iter_mut().zip(&release.weights) {

@@ -23,7 +23,7 @@ fn stress<S: Scalar>(
 ) -> SoftMax<S> {
     let body = &at.model.flexible[body];
     let ratios = flexible::stress_ratios(body, motions, elements);
-    SoftMax::new(&ratios, |_| 1.0, rho)
+    SoftMax::new(&ratios, |_| S::one(), rho)
 }
 
 impl<S: Scalar> Instant<S> {

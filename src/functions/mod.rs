@@ -18,6 +18,7 @@ pub(crate) mod stations;
 pub(crate) mod turning;
 
 pub(crate) use crate::math::soft_max::Bound;
+pub(crate) use evaluate::between_samples;
 pub(crate) use function::{Function, Reduction, Release};
 pub(crate) use instant::{EnergyPart, Gate, GateSide, Instant, Projectile};
 pub(crate) use multipliers::{JointMultipliers, Rows};

@@ -1,12 +1,17 @@
 //! Maxima of a quantity between its samples: turning points of interpolating polynomials.
 
 use crate::integrate::Trajectory;
-use crate::integrate::quadrature::ADDED;
+use crate::integrate::quadrature::{ADDED, NODES, WEIGHTS};
 use crate::math::Scalar;
 use std::ops::Range;
 
 /// Number of samples on either side of an interval that its polynomial uses, without cells.
 const BESIDE: usize = 2;
+/// Fewest and most parts of an interval between samples for an exponential, and the exponent below
+/// which it is negligible: e^-72 is ε².
+const FEWEST: f64 = 4.0;
+const MOST: f64 = 400.0;
+const COLD: f64 = -72.0;
 /// Number of bisections that reach the last bit.
 const BISECTIONS: usize = 60;
 
@@ -35,9 +40,18 @@ fn stretches<S: Scalar>(run: &Trajectory<S>) -> Vec<Stretch> {
         }
         return all;
     }
+    // Polynomials do not reach across kinks.
+    let part_of = |node: usize| run.grid.part(run.instants[nodes[node]]);
     for k in 1..nodes.len() {
-        let first = (k - 1).saturating_sub(BESIDE);
-        let last = (k + BESIDE).min(nodes.len() - 1);
+        let part = part_of(k - 1);
+        let mut first = (k - 1).saturating_sub(BESIDE);
+        while part_of(first) < part {
+            first += 1;
+        }
+        let mut last = (k + BESIDE).min(nodes.len() - 1);
+        while last > k && part_of(last - 1) > part {
+            last -= 1;
+        }
         all.push(Stretch {
             samples: nodes[first..=last].to_vec(),
             part: k - 1 - first..k - first,
@@ -88,6 +102,20 @@ impl Polynomial {
             sum * (self.nodes[j].1 - self.nodes[0].1)
         };
         (1..n).map(part).sum()
+    }
+
+    /// Zero between two fractions at which the polynomial has different signs, or the nearer end.
+    fn zero(&self, mut low: f64, mut high: f64) -> f64 {
+        let positive = self.value(low) > 0.0;
+        for _ in 0..BISECTIONS {
+            let middle = 0.5 * (low + high);
+            if (self.value(middle) > 0.0) == positive {
+                low = middle;
+            } else {
+                high = middle;
+            }
+        }
+        0.5 * (low + high)
     }
 
     /// Zero of the derivative between two fractions at which it has different signs.
@@ -173,6 +201,86 @@ pub(crate) fn points<S: Scalar>(run: &Trajectory<S>, values: &[S]) -> Vec<Point<
         }
     }
     all
+}
+
+/// The first time at which a quantity g that starts on the side `side` of zero is on the other one, by
+/// its samples and by the turning points of its polynomials: the fraction of the duration at which its
+/// polynomial is zero. Values within `noise` are zero. Otherwise the smallest distance from zero, and
+/// the fraction where it comes so near.
+pub(crate) fn crossing<S: Scalar>(
+    run: &Trajectory<S>,
+    values: &[S],
+    (side, noise): (f64, f64),
+) -> Result<f64, (f64, f64)> {
+    let mut last = (values[0].re() * side, run.instants[0]);
+    let mut nearest = (f64::INFINITY, 0.0);
+    for stretch in stretches(run) {
+        let all = || stretch.samples.iter().map(|&k| values[k].re() * side);
+        let (low, high) = all().fold((f64::INFINITY, f64::NEG_INFINITY), |(low, high), x| {
+            (low.min(x), high.max(x))
+        });
+        let polynomial = stretch.polynomial(run, values);
+        // Far from zero the polynomial does not turn there.
+        let turns = match low - (high - low) > nearest.0.max(noise) {
+            true => Vec::new(),
+            false => stretch.turns(&polynomial),
+        };
+        let at_turn = |&at: &f64| (polynomial.value(at) * side, at);
+        let at_node = |&k: &usize| (values[k].re() * side, run.instants[k]);
+        let nodes = &stretch.samples[stretch.part.start + 1..=stretch.part.end];
+        let mut points: Vec<(f64, f64)> = turns
+            .iter()
+            .map(at_turn)
+            .chain(nodes.iter().map(at_node))
+            .collect();
+        points.sort_by(|a, b| a.1.total_cmp(&b.1));
+        for (value, at) in points {
+            if value < -noise && last.0 > noise {
+                return Ok(polynomial.zero(last.1, at));
+            }
+            if value.abs() < nearest.0 && last.0.abs() > noise {
+                nearest = (value.abs(), at);
+            }
+            // A value of zero is on neither side.
+            if value.abs() > noise || last.0.abs() <= noise {
+                last = (value, at);
+            }
+        }
+    }
+    Err(nearest)
+}
+
+/// Integrals over the motion, in fractions of the duration, of e^{ρ(g − m)} and of (g − m) e^{ρ(g − m)}
+/// for a quantity g and its largest value m, by its polynomials between the samples; and m.
+pub(crate) fn exponential_integrals<S: Scalar>(
+    run: &Trajectory<S>,
+    values: &[S],
+    rho: f64,
+) -> [f64; 3] {
+    let top = maximum(run, values).value;
+    let (mut sum, mut moment) = (0.0, 0.0);
+    for stretch in stretches(run) {
+        let polynomial = stretch.polynomial(run, values);
+        let nodes = &polynomial.nodes;
+        for i in stretch.part.clone() {
+            let ((from, a), (end, b)) = (nodes[i], nodes[i + 1]);
+            if rho * (a.max(b) + (a - b).abs() - top) < COLD {
+                continue;
+            }
+            let parts = (rho * (a - b).abs()).ceil().clamp(FEWEST, MOST);
+            let width = (end - from) / parts;
+            for part in 0..parts as usize {
+                let start = from + width * part as f64;
+                for (x, weight) in NODES.into_iter().zip(WEIGHTS) {
+                    let away = polynomial.value(start + width * x) - top;
+                    let term = weight * width * (rho * away).exp();
+                    sum += term;
+                    moment += term * away;
+                }
+            }
+        }
+    }
+    [sum, moment, top]
 }
 
 /// The largest value over the motion.

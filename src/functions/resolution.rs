@@ -5,9 +5,13 @@ use super::turning::turns;
 use super::{Function, Instant, Reduction, Release, Scene};
 use crate::integrate::Trajectory;
 use crate::integrate::quadrature::{ADDED, LOBATTO, WEIGHTS};
+use crate::model::Model;
+use crate::system::placement::length_scale;
 
 /// Below this exponent the weight of a soft maximum is negligible: e^-72 is ε².
 const COLD: f64 = -72.0;
+/// Round-off of a quantity, relative to its natural size.
+const NOISE: f64 = 1e3 * f64::EPSILON;
 /// Largest number of cells of a step, and largest factor by which it may grow at once.
 const MOST: f64 = 256.0;
 const GROWTH: f64 = 4.0;
@@ -19,7 +23,7 @@ const ORDERS: [f64; 2] = [6.0, 10.0];
 pub(crate) struct Resolution {
     /// Largest estimated error of a sum, relative to the sum of sizes.
     pub error: f64,
-    /// Number of cells of each step that keeps the error of every sum below the goal.
+    /// Number of cells of each step that keeps the error of every sum below the goal; empty for one each.
     pub cells: Vec<u32>,
 }
 
@@ -34,7 +38,7 @@ struct Sum {
 }
 
 /// The cells that the functions `which` need over a run whose samples are nodes of cells. The error
-/// of each sum is below `goal` relative to the sum of sizes.
+/// of each sum is below `goal` relative to the sum of sizes, or round-off.
 pub(crate) fn resolution(
     scene: &Scene<f64>,
     which: &[usize],
@@ -48,7 +52,7 @@ pub(crate) fn resolution(
         cells: vec![0; steps],
     };
     for &f in which {
-        let Some(sum) = sum_of(scene, f, run, &nodes) else {
+        let Some(sum) = sum_of(scene, f, (run, &nodes), goal) else {
             // The maximum over the motion needs a cell in each step, but no sum.
             found
                 .cells
@@ -68,6 +72,10 @@ pub(crate) fn resolution(
             at = next;
         }
         found.error = found.error.max(total);
+    }
+    // One cell a step is what a run has that was told of none.
+    if run.grid.all_cells().is_empty() && found.cells.iter().all(|&cells| cells == 1) {
+        found.cells.clear();
     }
     found
 }
@@ -119,9 +127,41 @@ impl Sum {
     }
 }
 
+/// The size of a quantity with this unit in a motion, from the scene's mass m and length l and the
+/// largest speed v, at least √(g l): m v² for an energy or a moment. Zero if it is not known.
+fn natural(unit: &str, model: &Model<f64>, run: &Trajectory<f64>) -> f64 {
+    let mass: f64 = model.bodies.iter().map(|body| body.mass).sum();
+    let length = length_scale(model);
+    let square = |six: &[f64]| six[..3].iter().map(|x| x * x).sum::<f64>();
+    let fastest = (0..model.bodies.len()).flat_map(|body| {
+        let o = run.numbering.velocity(body);
+        (0..=run.last()).map(move |k| square(&run.v(k)[o..]))
+    });
+    let square = fastest.fold(model.gravity.norm() * length, f64::max);
+    let speed = square.sqrt();
+    match unit {
+        "m" => length,
+        "m/s" => speed,
+        "m/s²" => square / length,
+        "m²/s²" => square,
+        "rad" => 1.0,
+        "rad/s" => speed / length,
+        "kg m/s" => mass * speed,
+        "kg m²/s" => mass * speed * length,
+        "J" | "N m" => mass * square,
+        "N" => mass * square / length,
+        _ => 0.0,
+    }
+}
+
 /// The integrand of function f at the nodes of a run; `None` if the function is no sum.
-fn sum_of(scene: &Scene<f64>, f: usize, run: &Trajectory<f64>, nodes: &[usize]) -> Option<Sum> {
-    let (instant, rho) = match &scene.functions[f] {
+fn sum_of(
+    scene: &Scene<f64>,
+    f: usize,
+    (run, nodes): (&Trajectory<f64>, &[usize]),
+    goal: f64,
+) -> Option<Sum> {
+    let (instant, rho) = match scene.function(f) {
         Function::Reduced { instant, reduction } => match *reduction {
             Reduction::Final => return None,
             Reduction::Integral => (instant.clone(), None),
@@ -151,6 +191,12 @@ fn sum_of(scene: &Scene<f64>, f: usize, run: &Trajectory<f64>, nodes: &[usize]) 
     };
     let weighed = terms.iter().zip(nodes);
     let total: f64 = weighed.map(|(x, &k)| x.abs() * run.weights[k]).sum();
+    // A quantity that is zero but for round-off is as accurate as its unit in this scene.
+    let noise = match rho {
+        None => NOISE * natural(instant.unit(), &scene.model, run),
+        Some(_) => 0.0,
+    };
+    let total = total.max(noise / goal);
     let scale = if total > 0.0 { 1.0 / total } else { 0.0 };
     Some(Sum {
         sizes: terms.iter().map(|x| x.abs() * scale).collect(),

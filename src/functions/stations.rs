@@ -29,7 +29,7 @@ impl<S: Scalar> Largest<S> {
             Bound::Below => 1.0 / values.len() as f64,
             Bound::Above => 1.0,
         };
-        SoftMax::new(&values, |_| weight, self.rho)
+        SoftMax::new(&values, |_| S::from(weight), self.rho)
     }
 
     /// Its value at elastic coordinates.

@@ -55,8 +55,13 @@ pub(crate) fn simulate_by<S: SolveScalar>(
             ..settings.clone()
         };
         let run = simulate_watching(model, duration, &settings, watch)?;
-        if let Spacing::Tolerance(_) = settings.spacing {
-            settings.spacing = Spacing::Frozen(run.grid.clone());
+        match settings.spacing {
+            Spacing::Tolerance(_) => settings.spacing = Spacing::Frozen(run.grid.clone()),
+            // Given steps that end at kinks.
+            Spacing::Frozen(_) if settings.spacing.is_equal() => {
+                settings.spacing = Spacing::Frozen(run.grid.clone());
+            }
+            Spacing::Steps(_) | Spacing::Frozen(_) => {}
         }
         Ok(Chosen {
             run,
@@ -89,7 +94,7 @@ pub(crate) fn simulate_by<S: SolveScalar>(
             | IntegrationFailure::Opened { time, .. }
             | IntegrationFailure::Unstable { time, .. }
             | IntegrationFailure::Singular { time, .. },
-        ) if matches!(settings.spacing, Spacing::Steps(_)) => {
+        ) if settings.spacing.is_equal() => {
             let reason = format!("explicit steps of this size fail at t = {time:.4} s");
             with(STIFF, reason)
         }

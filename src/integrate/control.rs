@@ -3,9 +3,10 @@
 use super::grid::Grid;
 use super::headway::{Headway, Stop};
 use super::limits::Clock;
+use super::quadrature::{Intervals, Samples};
 use super::scale::Scale;
 use super::settings::{Settings, Spacing};
-use super::stops::load_steps;
+use super::stops::{kinks, widest};
 use crate::math::Scalar;
 use crate::model::Model;
 
@@ -64,7 +65,7 @@ pub(crate) struct Controller {
     /// Factor for the next step.
     factor: f64,
     rejected: bool,
-    /// Ends that adaptive steps must not pass, and the largest width (see [`load_steps`]).
+    /// Kinks that adaptive steps must not pass, and the largest width.
     stops: Vec<f64>,
     widest: f64,
     /// Width before a stop shortened the step.
@@ -105,7 +106,10 @@ impl Controller {
         scale: &Scale,
         (model, duration): (&Model<S>, f64),
     ) -> Self {
-        let (stops, widest) = load_steps(model, duration);
+        let (stops, widest) = (
+            kinks(model, duration, settings.method),
+            widest(model, duration),
+        );
         let spacing = &settings.spacing;
         // The time in which the scene crosses its length, as a fraction of the duration.
         let swing = (scale.length / scale.floor[0]).min(1.0 / scale.floor[1]) / duration;
@@ -117,7 +121,7 @@ impl Controller {
                 next: 1,
             },
             Spacing::Frozen(grid) => StepPlan::Given {
-                grid: grid.clone(),
+                grid: grid.fitted(&stops),
                 next: 1,
             },
             Spacing::Tolerance(tolerance) => {
@@ -131,7 +135,7 @@ impl Controller {
         Self {
             plan,
             exponent: 1.0 / order as f64,
-            estimates: !matches!(spacing, Spacing::Steps(_)),
+            estimates: !spacing.is_equal(),
             factor: 1.0,
             rejected: false,
             stops,
@@ -157,16 +161,27 @@ impl Controller {
     pub(crate) fn growing(&self) -> Grid {
         match &self.plan {
             StepPlan::Given { grid, .. } => grid.to_grow(),
-            StepPlan::Chosen { .. } => Grid::growing(),
+            StepPlan::Chosen { .. } => Grid::growing_to(&self.stops),
         }
+    }
+
+    /// The steps, if they are given.
+    pub(crate) fn given(&self) -> Option<&Grid> {
+        match &self.plan {
+            StepPlan::Given { grid, .. } => Some(grid),
+            StepPlan::Chosen { .. } => None,
+        }
+    }
+
+    /// The intervals at whose ends the motion is sampled.
+    pub(crate) fn intervals(&self, samples: Samples) -> Intervals {
+        let count = samples.intervals();
+        (self.given()).map_or_else(|| Intervals::equal(count), |grid| grid.intervals(count))
     }
 
     /// Number of steps, if they are given.
     pub(crate) fn steps(&self) -> Option<usize> {
-        match &self.plan {
-            StepPlan::Given { grid, .. } => Some(grid.steps()),
-            StepPlan::Chosen { .. } => None,
-        }
+        self.given().map(Grid::steps)
     }
 
     /// Whether the errors of steps are needed: to adapt the steps, or to check that they stay

@@ -67,6 +67,7 @@ impl Ledger {
         let tolerance = match settings.spacing {
             Spacing::Steps(_) => return None,
             Spacing::Tolerance(tolerance) => Some(tolerance),
+            Spacing::Frozen(_) if settings.spacing.is_equal() => return None,
             Spacing::Frozen(_) => None,
         };
         // A complex run has the real part of a run that was checked.

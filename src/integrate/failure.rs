@@ -256,6 +256,20 @@ pub(crate) enum IntegrationFailure {
         /// Waiting time \[s\].
         waited: f64,
     },
+    /// The quantity that ends the run touches its value and turns back.
+    #[error(
+        "the {quantity} that ends the run only touches {value} at t = {time:.6e} s and turns back: the \
+         time of such an event has no derivative, and at some designs nearby there is no event; choose \
+         a value that it crosses"
+    )]
+    Touches {
+        /// The quantity.
+        quantity: String,
+        /// Its value at the event.
+        value: f64,
+        /// The time \[s\].
+        time: f64,
+    },
     /// A flexible body passes through itself.
     #[error(
         "\"{body}\" is turned inside out at t = {time:.6e} s ({place}): it is loaded beyond what it can bear, \

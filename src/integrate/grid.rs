@@ -1,16 +1,30 @@
 //! Ends of steps and positions of samples, as fractions of the duration.
 
-use super::quadrature::{Step, is_same};
+use super::parts::{NEAR, parts, shared};
+use super::quadrature::{Intervals, Step, is_same};
+use crate::math::Scalar;
 use crate::system::RedundantRows;
 
-/// Ends of the steps as fractions τ_0 = 0 < τ_1 < … < τ_N of the duration T, so that t_k = τ_k T
-/// depends only on the duration. τ_N is 1, or larger if the motion ends too close to a singular
-/// position for a step to end there.
+/// Ends of the steps as fractions τ_0 = 0 < τ_1 < … < τ_N of the duration T. τ_N is 1, or larger if
+/// the motion ends too close to a singular position for a step to end there.
+///
+/// Let κ T be the time of the last kink of loads and drives (κ = 0 without). Kinks have fixed times,
+/// so only the steps after it move with the duration:
+///
+/// ```text
+/// dt/dT = 0 for τ ≤ κ,     dt/dT = (τ − κ)/(1 − κ) for τ > κ
+/// ```
 #[derive(Clone, Debug, PartialEq)]
 pub(crate) struct Grid {
     ends: Vec<f64>,
-    /// Width of every step if all are equal, without the round-off of their ends.
-    equal: Option<f64>,
+    /// Kinks at which steps end: ascending fractions. They divide the motion into parts.
+    kinks: Vec<f64>,
+    /// Whether steps end at all kinks. Equal steps of a duration that never changes need not.
+    holds_kinks: bool,
+    /// Numbers of steps of the parts if these are given and equal in each part; else empty.
+    equal: Vec<usize>,
+    /// Halvings of the steps that were given.
+    halvings: u32,
     /// Number of cells of each step for sums over the motion (see
     /// [`quadrature`](super::quadrature)); one per step if empty.
     cells: Vec<u32>,
@@ -23,24 +37,62 @@ impl Grid {
     pub(crate) fn uniform(steps: usize) -> Self {
         Self {
             ends: (0..=steps).map(|k| k as f64 / steps as f64).collect(),
-            equal: Some(1.0 / steps as f64),
-            cells: Vec::new(),
-            left_out: Vec::new(),
+            equal: vec![steps],
+            holds_kinks: false,
+            ..Self::growing()
+        }
+    }
+
+    /// `steps` steps, equal between the `kinks`; at least one between two of them.
+    pub(crate) fn between(steps: usize, kinks: &[f64]) -> Self {
+        if kinks.is_empty() {
+            return Self {
+                holds_kinks: true,
+                ..Self::uniform(steps)
+            };
+        }
+        let parts = parts(kinks);
+        let widths: Vec<f64> = parts.iter().map(|[from, end]| end - from).collect();
+        let equal = shared(steps, &widths);
+        let mut ends = vec![0.0];
+        for (&[from, end], &count) in parts.iter().zip(&equal) {
+            let inner = (1..count).map(|i| from + (end - from) * (i as f64 / count as f64));
+            ends.extend(inner.chain([end]));
+        }
+        Self {
+            ends,
+            equal,
+            kinks: kinks.to_vec(),
+            ..Self::growing()
         }
     }
 
     /// A grid that grows step by step from 0.
     pub(crate) fn growing() -> Self {
-        Self::growing_from(0.0)
-    }
-
-    /// An empty grid that grows from the fraction `start`, for a part of a motion.
-    pub(crate) fn growing_from(start: f64) -> Self {
         Self {
-            ends: vec![start],
-            equal: None,
+            ends: vec![0.0],
+            kinks: Vec::new(),
+            holds_kinks: true,
+            equal: Vec::new(),
+            halvings: 0,
             cells: Vec::new(),
             left_out: Vec::new(),
+        }
+    }
+
+    /// A grid that grows, with steps that will end at `kinks`.
+    pub(crate) fn growing_to(kinks: &[f64]) -> Self {
+        Self {
+            kinks: kinks.to_vec(),
+            ..Self::growing()
+        }
+    }
+
+    /// This empty grid from the fraction `start` on.
+    pub(crate) fn from(self, start: f64) -> Self {
+        Self {
+            ends: vec![start],
+            ..self
         }
     }
 
@@ -48,10 +100,154 @@ impl Grid {
     pub(crate) fn to_grow(&self) -> Self {
         Self {
             ends: vec![0.0],
-            equal: self.equal,
-            cells: self.cells.clone(),
             left_out: Vec::new(),
+            ..self.clone()
         }
+    }
+
+    /// The grid with these kinks, and equal steps in between if `equal`; `None` if they are no ends of
+    /// steps.
+    pub(crate) fn with_kinks(mut self, kinks: Vec<f64>, equal: bool) -> Option<Self> {
+        let inner = &self.ends[1..self.steps()];
+        let is_end = |kink: &f64| inner.iter().any(|end| (end - kink).abs() <= NEAR);
+        if !(kinks.iter().all(is_end) && kinks.windows(2).all(|pair| pair[0] < pair[1])) {
+            return None;
+        }
+        if equal {
+            let at = |kink: &f64| self.ends.partition_point(|end| *end < kink - NEAR);
+            let marks: Vec<usize> = kinks.iter().map(at).chain([self.steps()]).collect();
+            let before = std::iter::once(0).chain(marks.iter().copied());
+            self.equal = marks
+                .iter()
+                .zip(before)
+                .map(|(end, from)| end - from)
+                .collect();
+        }
+        self.kinks = kinks;
+        Some(self)
+    }
+
+    /// The steps for a duration at which the kinks are at these fractions. Each part keeps its steps,
+    /// stretched. If the number of kinks changes, given steps are distributed anew. Other steps are
+    /// left out with their parts, or a new part gets as many as the last one has.
+    pub(crate) fn fitted(&self, kinks: &[f64]) -> Self {
+        if kinks == self.kinks || !self.holds_kinks {
+            return self.clone();
+        }
+        if self.is_equal() && kinks.len() != self.kinks.len() {
+            let steps: usize = self.equal.iter().sum();
+            let mut grid = Self::between(steps >> self.halvings, kinks);
+            (0..self.halvings).for_each(|_| grid = grid.halved());
+            return grid;
+        }
+        let (old, new) = (parts(&self.kinks), parts(kinks));
+        let mut grid = Self {
+            ends: vec![0.0],
+            kinks: kinks.to_vec(),
+            cells: Vec::new(),
+            ..self.clone()
+        };
+        let mut k = 1;
+        for (i, &[from, end]) in new.iter().enumerate() {
+            let Some(&[before, after]) = old.get(i) else {
+                let count = self.in_part(self.steps());
+                let inner = (1..count).map(|j| from + (end - from) * (j as f64 / count as f64));
+                grid.ends.extend(inner.chain([end]));
+                continue;
+            };
+            let scale = (end - from) / (after - before);
+            while k <= self.steps() && self.ends[k] < after - NEAR {
+                grid.ends.push(from + (self.ends[k] - before) * scale);
+                k += 1;
+            }
+            let last = i + 1 == new.len();
+            grid.ends.push(match self.ends.get(k) {
+                Some(&beyond) if last && beyond > 1.0 => from + (beyond - before) * scale,
+                _ => end,
+            });
+            k += 1;
+        }
+        let steps = grid.steps();
+        if !self.cells.is_empty() {
+            grid.cells = (1..=steps).map(|k| self.cells(k) as u32).collect();
+        }
+        grid.left_out.retain(|(from, _)| *from <= steps);
+        grid
+    }
+
+    /// Kinks at which steps end.
+    pub(crate) fn kinks(&self) -> &[f64] {
+        &self.kinks
+    }
+
+    /// Whether the steps are given: equal between kinks, at which they end.
+    pub(crate) fn is_equal(&self) -> bool {
+        self.holds_kinks && !self.equal.is_empty()
+    }
+
+    /// Fraction of the last kink: until then the steps have fixed times.
+    fn fixed(&self) -> f64 {
+        self.kinks.last().copied().unwrap_or(0.0)
+    }
+
+    /// Index of the part of a step from the fraction `start`.
+    pub(crate) fn part(&self, start: f64) -> usize {
+        self.kinks.partition_point(|kink| *kink <= start + NEAR)
+    }
+
+    /// Number of step k in its part, from 1.
+    pub(crate) fn in_part(&self, k: usize) -> usize {
+        match self.part(self.ends[k - 1]) {
+            0 => k,
+            part => {
+                let kink = self.kinks[part - 1];
+                k - self.ends.partition_point(|end| *end < kink - NEAR)
+            }
+        }
+    }
+
+    /// dt/dT at the fraction `at`.
+    pub(crate) fn rate(&self, at: f64) -> f64 {
+        let fixed = self.fixed();
+        match at <= fixed {
+            true => 0.0,
+            false => (at - fixed) / (1.0 - fixed),
+        }
+    }
+
+    /// dh/dT of a step from the fraction `start`, relative to its width.
+    pub(crate) fn growth(&self, start: f64) -> f64 {
+        match self.part(start) == self.kinks.len() {
+            true => 1.0 / (1.0 - self.fixed()),
+            false => 0.0,
+        }
+    }
+
+    /// Time at the fraction `at`, if the motion lasts `duration` \[s\].
+    pub(crate) fn time<S: Scalar>(&self, duration: S, at: f64) -> S {
+        moved(duration, at, self.rate(at))
+    }
+
+    /// Size of a step of `width` from the fraction `start` \[s\].
+    pub(crate) fn size<S: Scalar>(&self, duration: S, width: f64, start: f64) -> S {
+        moved(duration, width, width * self.growth(start))
+    }
+
+    /// `count` intervals of equal size; with given steps equal between kinks, so that each end of one
+    /// stays in its step.
+    pub(crate) fn intervals(&self, count: usize) -> Intervals {
+        if self.kinks.is_empty() || !self.is_equal() || count < self.equal.len() {
+            return Intervals::equal(count);
+        }
+        let steps: usize = self.equal.iter().sum();
+        let shares: Vec<f64> = self
+            .equal
+            .iter()
+            .map(|&n| n as f64 / steps as f64)
+            .collect();
+        let counts = shared(count >> self.halvings, &shares).into_iter();
+        let counts = counts.map(|few| few << self.halvings);
+        Intervals::between(parts(&self.kinks).into_iter().zip(counts).collect())
     }
 
     /// The grid with these ends; `None` unless they ascend from 0 and only the last is 1 or more.
@@ -65,9 +261,7 @@ impl Grid {
         let finite = ends.iter().all(|end| end.is_finite());
         (rises && whole && finite).then_some(Self {
             ends,
-            equal: None,
-            cells: Vec::new(),
-            left_out: Vec::new(),
+            ..Self::growing()
         })
     }
 
@@ -118,8 +312,13 @@ impl Grid {
 
     /// Length of step k = 1 … N.
     pub(crate) fn width(&self, k: usize) -> f64 {
-        self.equal
-            .unwrap_or_else(|| self.ends[k] - self.ends[k - 1])
+        let part = self.part(self.ends[k - 1]);
+        let Some(&count) = self.equal.get(part) else {
+            return self.ends[k] - self.ends[k - 1];
+        };
+        let from = part.checked_sub(1).map_or(0.0, |before| self.kinks[before]);
+        let end = self.kinks.get(part).copied().unwrap_or(1.0);
+        (end - from) / count as f64
     }
 
     /// The grid with these numbers of cells.
@@ -167,7 +366,10 @@ impl Grid {
         }
         Self {
             ends,
-            equal: self.equal.map(|width| 0.5 * width),
+            kinks: self.kinks.clone(),
+            holds_kinks: self.holds_kinks,
+            equal: self.equal.iter().map(|count| 2 * count).collect(),
+            halvings: self.halvings + 1,
             cells,
             left_out: (self.left_out.iter())
                 .map(|(step, rows)| (2 * step - 1, rows.clone()))
@@ -196,6 +398,12 @@ impl Grid {
     pub(crate) fn reached(&self) -> f64 {
         self.ends[self.ends.len() - 1]
     }
+}
+
+/// The part `part` of a duration T, which moves with it by `rate`.
+fn moved<S: Scalar>(duration: S, part: f64, rate: f64) -> S {
+    let real = duration.re();
+    S::from(real * part) + (duration - S::from(real)) * rate
 }
 
 /// Position of a sample relative to the steps.

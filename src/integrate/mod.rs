@@ -10,6 +10,7 @@ pub(crate) mod headway;
 pub(crate) mod implicit;
 pub(crate) mod limits;
 pub(crate) mod multipliers;
+mod parts;
 pub(crate) mod quadrature;
 pub(crate) mod replay;
 pub(crate) mod rows;
@@ -30,6 +31,7 @@ pub(crate) use quadrature::Samples;
 #[cfg(test)]
 pub(crate) use settings::MEMORY;
 pub(crate) use settings::{LinearSolver, Method, Settings, Spacing, Start};
+pub(crate) use stops::has_kinks;
 pub(crate) use trajectory::{Tape, Trajectory};
 pub(crate) use work::WorkCounts;
 
@@ -125,7 +127,7 @@ fn close<S: SolveScalar>(
     }
     // Nodes of cells have their weights already.
     if !run.has_cells {
-        run.weights = quadrature::weights(&run.instants);
+        run.weigh();
     }
     run.step_error = controller.largest_error();
     run.counts.steps = run.grid.steps();

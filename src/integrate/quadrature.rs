@@ -58,7 +58,8 @@ const SAME: f64 = 1e-15;
 pub(crate) enum Samples {
     /// The ends of the steps.
     StepEnds,
-    /// This many intervals of equal size. Inside steps the method's polynomial gives the motion.
+    /// This many intervals of equal size (between kinks, see [`Grid::intervals`](super::Grid)). Inside
+    /// steps the method's polynomial gives the motion.
     /// One-stage formulas always use the ends of their steps.
     Uniform(usize),
     /// The nodes of the [`cells`](super::Grid::cells) of each step and, for display, the ends of
@@ -66,8 +67,39 @@ pub(crate) enum Samples {
     Quadrature(usize),
 }
 
-/// Weights of samples at these fractions; their sum is one.
-pub(crate) fn weights(instants: &[f64]) -> Vec<f64> {
+/// Weights of samples at these fractions; their sum is one. Sums do not reach across `kinks` at which
+/// samples lie.
+pub(crate) fn weights(instants: &[f64], kinks: &[f64]) -> Vec<f64> {
+    let mut all = vec![0.0; instants.len()];
+    let mut from = 0;
+    let at = |kink: &f64| {
+        instants
+            .iter()
+            .position(|at| (at - kink).abs() < EQUAL * EQUAL)
+    };
+    let last = instants.len() - 1;
+    for end in kinks.iter().filter_map(at).chain([last]) {
+        let (start, width) = (instants[from], instants[end] - instants[from]);
+        let part = &instants[from..=end];
+        let own = match (start, width) {
+            (0.0, 1.0) => of_part(part),
+            _ => of_part(
+                &part
+                    .iter()
+                    .map(|at| (at - start) / width)
+                    .collect::<Vec<f64>>(),
+            ),
+        };
+        for (weight, own) in all[from..].iter_mut().zip(own) {
+            *weight += own * width;
+        }
+        from = end;
+    }
+    all
+}
+
+/// Weights of samples at these fractions of a part of the motion.
+fn of_part(instants: &[f64]) -> Vec<f64> {
     let last = instants.len() - 1;
     let trapezoidal = |k: usize| {
         let (before, after) = (k.saturating_sub(1), (k + 1).min(last));
@@ -144,35 +176,89 @@ pub(crate) struct Due {
     pub shown: bool,
 }
 
+/// Intervals at whose ends a motion is sampled.
+#[derive(Clone, Debug)]
+pub(crate) struct Intervals {
+    count: usize,
+    /// Parts of the motion with their numbers of equal intervals; none if all intervals are equal.
+    parts: Vec<([f64; 2], usize)>,
+}
+
+impl Intervals {
+    /// This many equal ones.
+    pub(super) fn equal(count: usize) -> Self {
+        Self {
+            count,
+            parts: Vec::new(),
+        }
+    }
+
+    /// So many equal ones in each part.
+    pub(super) fn between(parts: Vec<([f64; 2], usize)>) -> Self {
+        Self {
+            count: parts.iter().map(|(_, own)| own).sum(),
+            parts,
+        }
+    }
+
+    /// The end of interval i ≥ 1.
+    fn end(&self, i: usize) -> f64 {
+        let mut before = 0;
+        for &([from, end], own) in &self.parts {
+            match i - before {
+                last if last == own => return end,
+                j if j < own => return from + (end - from) * (j as f64 / own as f64),
+                _ => before += own,
+            }
+        }
+        i as f64 / self.count as f64
+    }
+}
+
+impl Samples {
+    /// Number of equal intervals.
+    pub(super) fn intervals(self) -> usize {
+        match self {
+            Samples::StepEnds => 0,
+            Samples::Uniform(count) | Samples::Quadrature(count) => count,
+        }
+    }
+}
+
 /// Whether `samples` requires an instant inside a step with so many `cells` that ends at `end`.
-/// `next` is the number of the next equal interval.
-pub(super) fn looks_inside(samples: Samples, next: usize, (end, cells): (f64, usize)) -> bool {
-    let before =
-        |count: usize| count > 0 && next <= count && !within(end, next as f64 / count as f64);
+/// `next` is the number of the next of the `intervals`.
+pub(super) fn looks_inside(
+    samples: Samples,
+    (next, intervals): (usize, &Intervals),
+    (end, cells): (f64, usize),
+) -> bool {
+    let count = intervals.count;
+    let before = count > 0 && next <= count && !within(end, intervals.end(next));
     match samples {
         Samples::StepEnds => !within(end, 1.0),
-        Samples::Uniform(count) => before(count),
-        Samples::Quadrature(count) => cells > 0 || before(count) || !within(end, 1.0),
+        Samples::Uniform(_) => before,
+        Samples::Quadrature(_) => cells > 0 || before || !within(end, 1.0),
     }
 }
 
 /// The instants of `samples` in a step, in ascending order without its start. `next` is the number
-/// of the next equal interval.
-pub(super) fn due(
+/// of the next of the `intervals`.
+pub(super) fn due<'a>(
     samples: Samples,
-    next: &mut usize,
+    (next, intervals): (&'a mut usize, &'a Intervals),
     step: Step,
-) -> impl Iterator<Item = Due> + use<'_> {
-    let (equal, nodes) = match samples {
-        Samples::StepEnds => (0, 1),
-        Samples::Uniform(count) => (count, 0),
-        Samples::Quadrature(count) => (count, step.nodes()),
+) -> impl Iterator<Item = Due> + use<'a> {
+    let nodes = match samples {
+        Samples::StepEnds => 1,
+        Samples::Uniform(_) => 0,
+        Samples::Quadrature(_) => step.nodes(),
     };
+    let equal = intervals.count;
     let weighed = matches!(samples, Samples::Quadrature(_));
     let mut node = 1;
     std::iter::from_fn(move || {
         let shown = (*next <= equal && equal > 0)
-            .then(|| *next as f64 / equal as f64)
+            .then(|| intervals.end(*next))
             .filter(|&at| within(at, step.end));
         let summed = (node <= nodes).then(|| match weighed {
             true => step.node(node),
@@ -219,13 +305,14 @@ mod tests {
 
     /// Sum of f over [0, 1] with these ends of steps and this number of cells.
     fn sum(ends: &[f64], cells: usize, f: impl Fn(f64) -> f64) -> f64 {
-        let mut next = 1;
+        let (mut next, intervals) = (1, Intervals::equal(7));
         let mut total = 0.0;
         for pair in ends.windows(2) {
             let (from, end) = (pair[0], pair[1]);
             let step = Step { from, end, cells };
             total += step.first_weight() * f(from);
-            for Due { at, weight, .. } in due(Samples::Quadrature(7), &mut next, step) {
+            for Due { at, weight, .. } in due(Samples::Quadrature(7), (&mut next, &intervals), step)
+            {
                 total += weight * f(at);
             }
         }
@@ -250,7 +337,7 @@ mod tests {
     #[test]
     fn equal_samples_sum_with_order_6_and_others_with_order_2() {
         let error = |instants: Vec<f64>| {
-            let terms = weights(&instants).into_iter().zip(&instants);
+            let terms = weights(&instants, &[]).into_iter().zip(&instants);
             (terms.map(|(w, t)| w * t.exp()).sum::<f64>() - (1.0_f64.exp() - 1.0)).abs()
         };
         let equal = |n: usize| (0..=n).map(|k| k as f64 / n as f64).collect::<Vec<f64>>();
@@ -268,8 +355,8 @@ mod tests {
             end: 0.5,
             cells: 1,
         };
-        let mut next = 1;
-        let all: Vec<Due> = due(Samples::Quadrature(4), &mut next, step).collect();
+        let (mut next, intervals) = (1, Intervals::equal(4));
+        let all: Vec<Due> = due(Samples::Quadrature(4), (&mut next, &intervals), step).collect();
         assert_eq!(all.len(), ADDED);
         assert_eq!(all.iter().filter(|due| due.shown).count(), 2);
         assert!(all.iter().all(|due| due.weight > 0.0));

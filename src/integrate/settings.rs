@@ -80,15 +80,21 @@ impl Method {
         }
     }
 
-    /// The adaptive method with this [`Method::name`].
-    pub(crate) fn adaptive(name: &str) -> Option<Self> {
-        [
-            Method::Dop853,
-            Method::Radau { stages: 2 },
-            Method::Radau { stages: 3 },
-        ]
-        .into_iter()
-        .find(|method| method.name() == name)
+    /// The method with this [`Method::name`].
+    pub(crate) fn named(name: &str) -> Option<Self> {
+        let radius = name
+            .strip_prefix("generalised-alpha ")
+            .and_then(|x| x.parse().ok());
+        let alpha = radius.map(|radius| Method::GeneralisedAlpha { radius });
+        let formulas = (1..=6).flat_map(|order| {
+            [Start::Radau, Start::RisingOrder].map(|start| Method::Bdf { order, start })
+        });
+        [Method::Dop853]
+            .into_iter()
+            .chain([2, 3].map(|stages| Method::Radau { stages }))
+            .chain(formulas)
+            .chain(alpha)
+            .find(|method| method.name() == name)
     }
 
     /// Name of the method with its parameters.
@@ -116,11 +122,22 @@ pub(crate) enum Spacing {
     Steps(usize),
     /// Adaptive steps: largest estimated error, relative to the scene's lengths and speeds.
     Tolerance(f64),
-    /// Steps of an earlier run, stretched to the duration.
+    /// Steps of an earlier run, stretched to the duration; those between kinks of loads and drives
+    /// only after the last kink.
     Frozen(Grid),
 }
 
 impl Spacing {
+    /// Whether the steps are given and equal, or equal between kinks: their accuracy is the user's
+    /// choice.
+    pub(crate) fn is_equal(&self) -> bool {
+        match self {
+            Spacing::Steps(_) => true,
+            Spacing::Frozen(grid) => grid.is_equal(),
+            Spacing::Tolerance(_) => false,
+        }
+    }
+
     /// Redundant rows that an earlier run left out, if they fit the present ones in number.
     pub(super) fn left_out(&self, now: &RedundantRows) -> &[(usize, RedundantRows)] {
         match self {

@@ -2,11 +2,10 @@
 
 use super::grid::{Grid, SamplePlace};
 use super::limits::Limits;
-use super::quadrature::Samples;
-use super::quadrature::{Due, Step};
+use super::quadrature::{Due, Step, weights};
 use super::rows::real;
 use super::schedule::Schedule;
-use super::settings::{LinearSolver, Method, Spacing};
+use super::settings::{LinearSolver, Method};
 use super::work::WorkCounts;
 use super::{explicit, implicit};
 use crate::math::{Complex64, Scalar};
@@ -32,6 +31,8 @@ pub(crate) struct Trajectory<S: Scalar> {
     pub places: Vec<SamplePlace>,
     /// Weights of the sampled instants in sums over the motion; their sum is one.
     pub weights: Vec<f64>,
+    /// Their derivatives dw/dT times T, plus w: derivatives of the weights of integrals, T w.
+    pub moving: Vec<f64>,
     /// Whether the sampled instants with weights are the nodes of the cells of the steps.
     pub has_cells: bool,
     /// By instant: whether tables and figures show it.
@@ -84,6 +85,7 @@ impl<S: Scalar> Trajectory<S> {
             instants: vec![0.0],
             places: vec![SamplePlace::Node(0)],
             weights: vec![0.0],
+            moving: vec![0.0],
             shown: vec![true],
             has_cells: false,
             q: initial.q.clone(),
@@ -106,6 +108,7 @@ impl<S: Scalar> Trajectory<S> {
         self.instants.reserve(samples);
         self.places.reserve(samples);
         self.weights.reserve(samples);
+        self.moving.reserve(samples);
         self.shown.reserve(samples);
         self.q.reserve(samples * nq);
         self.v.reserve(samples * nv);
@@ -117,8 +120,10 @@ impl<S: Scalar> Trajectory<S> {
 
     /// Adds an instant.
     pub(crate) fn push(&mut self, due: Due, place: SamplePlace, [q, v, a, lambda]: [&[S]; 4]) {
+        let growth = self.grid.growth(self.grid.ends()[self.grid.steps() - 1]);
         self.instants.push(due.at);
         self.weights.push(due.weight);
+        self.moving.push(due.weight * growth);
         self.shown.push(due.shown);
         self.places.push(place);
         self.q.extend_from_slice(q);
@@ -127,19 +132,35 @@ impl<S: Scalar> Trajectory<S> {
         self.lambda.extend_from_slice(lambda);
     }
 
-    /// Takes the cells of given steps, if the motion is sampled at their nodes.
-    pub(super) fn take_cells(&mut self, spacing: &Spacing, samples: Samples) {
-        self.has_cells = matches!(samples, Samples::Quadrature(_));
-        if let Spacing::Frozen(grid) = spacing {
-            self.grid = grid.to_grow();
+    /// Adds the weight of the start of a step to the last instant.
+    pub(super) fn weigh_start(&mut self, step: &Step) {
+        let growth = self.grid.growth(step.from);
+        if let (Some(weight), Some(moving)) = (self.weights.last_mut(), self.moving.last_mut()) {
+            *weight += step.first_weight();
+            *moving += step.first_weight() * growth;
         }
     }
 
-    /// Adds the weight of the start of a step to the last instant.
-    pub(super) fn weigh_start(&mut self, step: &Step) {
-        if let Some(weight) = self.weights.last_mut() {
-            *weight += step.first_weight();
-        }
+    /// Weighs samples that are no nodes of cells.
+    pub(crate) fn weigh(&mut self) {
+        let kinks = self.grid.kinks();
+        self.weights = weights(&self.instants, kinks);
+        let Some(&last) = kinks.last() else {
+            self.moving.clone_from(&self.weights);
+            return;
+        };
+        // The weights of the last part alone.
+        let growth = self.grid.growth(last);
+        let from = self
+            .instants
+            .partition_point(|&at| self.grid.growth(at) == 0.0);
+        let part: Vec<f64> = self.instants[from..]
+            .iter()
+            .map(|at| (at - last) / (1.0 - last))
+            .collect();
+        let own = weights(&part, &[]);
+        let own = own.into_iter().map(|w| w * (1.0 - last) * growth);
+        self.moving = vec![0.0; from].into_iter().chain(own).collect();
     }
 
     /// The sampled instants that tables and figures show.
@@ -179,7 +200,7 @@ impl<S: Scalar> Trajectory<S> {
 
     /// Time of instant k \[s\].
     pub(crate) fn time(&self, k: usize) -> S {
-        self.duration * self.instants[k]
+        self.grid.time(self.duration, self.instants[k])
     }
 
     /// Positions at instant k.
@@ -198,8 +219,10 @@ impl<S: Scalar> Trajectory<S> {
     }
 
     /// Weight of instant k in sums over [0, 1].
-    pub(crate) fn quadrature_weight(&self, k: usize) -> f64 {
-        self.weights[k]
+    pub(crate) fn quadrature_weight(&self, k: usize) -> S {
+        let duration = self.duration.re();
+        let change = (self.duration - S::from(duration)) / duration;
+        change * (self.moving[k] - self.weights[k]) + self.weights[k]
     }
 }
 
@@ -215,6 +238,7 @@ impl Trajectory<f64> {
             instants: self.instants.clone(),
             places: self.places.clone(),
             weights: self.weights.clone(),
+            moving: self.moving.clone(),
             has_cells: self.has_cells,
             shown: self.shown.clone(),
             q,
@@ -243,6 +267,7 @@ impl Trajectory<Complex64> {
             instants: self.instants.clone(),
             places: self.places.clone(),
             weights: self.weights.clone(),
+            moving: self.moving.clone(),
             shown: self.shown.clone(),
             has_cells: self.has_cells,
             q: real(&self.q),

@@ -34,7 +34,7 @@ impl<S: Scalar> SoftMax<S> {
     ///
     /// # Panics
     /// `values` is empty.
-    pub(crate) fn new(values: &[S], c: impl Fn(usize) -> f64, rho: f64) -> Self {
+    pub(crate) fn new(values: &[S], c: impl Fn(usize) -> S, rho: f64) -> Self {
         let peak = (0..values.len())
             .reduce(|best, k| {
                 if values[k].re() > values[best].re() {

@@ -53,6 +53,16 @@ pub(crate) enum Smoothness {
 /// Part of an interval over which a linear motion is rounded at each of its ends.
 const ROUNDED: f64 = 0.2;
 
+/// Number of continuous derivatives, at its breaks, of the force or acceleration that a table gives. A
+/// motion gives an acceleration, its second derivative.
+pub(crate) fn continuous((interpolation, smoothness): (Interpolation, Smoothness)) -> usize {
+    match (interpolation, smoothness) {
+        (_, Smoothness::Motion) | (Interpolation::Linear, Smoothness::Magnitude) => 0,
+        (Interpolation::Monotone, Smoothness::Magnitude) => 1,
+        (Interpolation::Spline, Smoothness::Magnitude) => 2,
+    }
+}
+
 /// Instants at which the curve of a table is no longer smooth, where steps should end.
 pub(crate) fn breaks<S: Scalar>(
     times: &[S],

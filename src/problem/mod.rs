@@ -221,6 +221,15 @@ impl Problem {
         bodies.into_iter().any(|body| body.elements.is_some())
     }
 
+    /// Whether the end of the motion depends on the design: its duration is a variable, or it ends at an
+    /// event.
+    pub(crate) fn end_moves(&self) -> bool {
+        let simulation = self.written.simulation.as_ref();
+        simulation.is_some_and(|simulation| {
+            simulation.duration.variable.is_some() || simulation.until.is_some()
+        })
+    }
+
     /// Name of the problem and of its results.
     pub fn name(&self) -> &str {
         &self.name

@@ -196,7 +196,7 @@ impl<S: Scalar> Solved<'_, S> {
                 aggregate,
             } => {
                 let ratios = self.ratios(&configuration, cases, mesh.face_set(faces)?);
-                let soft = SoftMax::new(&ratios, |_| 1.0, *rho);
+                let soft = SoftMax::new(&ratios, |_| S::one(), *rho);
                 match aggregate {
                     Aggregate::Ks => soft.ks,
                     Aggregate::InducedExponential => soft.induced_exponential(&ratios),
@@ -215,7 +215,7 @@ impl<S: Scalar> Solved<'_, S> {
     pub fn peak(&self, cases: &[usize], faces: &str) -> Result<Peak, UnknownSet> {
         let set = self.structure.topology.mesh.face_set(faces)?;
         let ratios = self.ratios(&self.configuration(), cases, set);
-        let soft = SoftMax::new(&ratios, |_| 1.0, 1.0);
+        let soft = SoftMax::new(&ratios, |_| S::one(), 1.0);
         let (place, k) = (soft.peak / STRESS_POINTS, soft.peak % STRESS_POINTS);
         Ok(Peak {
             ratio: soft.maximum,

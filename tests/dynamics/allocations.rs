@@ -113,7 +113,7 @@ fn implicit_steps_allocate_nothing() {
 }
 
 /// Vectors of the history, which grow with adaptive steps.
-const HISTORY: u64 = 9;
+const HISTORY: u64 = 10;
 
 #[test]
 fn steps_that_follow_the_error_allocate_their_history_only() {

@@ -473,3 +473,129 @@ fn far_from_the_origin_the_weights_of_a_release_do_not_drift() {
         "{place} {barrier}"
     );
 }
+
+/// A body moves at constant speed, so aggregates of its position have closed forms: with a = ρ s T,
+/// KS = m + ln((1 − e^{−a})/a)/ρ and the induced exponential is m − 1/ρ + T s e^{−a}/(1 − e^{−a}), for the
+/// largest position m at the end or at the start. Samples that are too wide for them miss the peak, and
+/// the estimate says so.
+#[test]
+fn samples_that_miss_a_sharp_peak_are_known_to() {
+    for (speed, rho, steps, samples, method) in [
+        (1.0_f64, 1000.0, 20, None, json!("dop853")),
+        (-1.0, 1000.0, 20, None, json!("dop853")),
+        (2.0, 300.0, 50, None, json!({"radau": {"stages": 2}})),
+        (-0.5, 4000.0, 30, Some(12), json!({"radau": {"stages": 3}})),
+        (1.0, 90.0, 25, None, json!({"bdf": {"order": 2}})),
+        (
+            3.0,
+            50.0,
+            40,
+            None,
+            json!({"generalised_alpha": {"radius": 0.8}}),
+        ),
+    ] {
+        let x = json!({"position": {"body": "b", "direction": [1, 0, 0]}});
+        let mut file = json!({
+            "version": 1, "name": "sharp", "gravity": [0, 0, 0],
+            "bodies": {"b": {"shape": {"sphere": {"radius": 0.1}}, "mass": 1,
+                             "velocity": {"linear": [speed, 0, 0]}}},
+            "simulation": {"duration": 1, "steps": steps, "method": method},
+            "functions": {"ks": {"ks": {"rho": rho, "of": x}},
+                          "mean": {"induced_exponential": {"rho": rho, "of": x}}}
+        });
+        if let Some(samples) = samples {
+            file["simulation"]["samples"] = json!(samples);
+        }
+        let problem = crate::tests::reference::documents::problem(&file);
+        let at = Evaluated::new(&problem, &problem.start()).expect("runs");
+        let found = estimate(&problem, &at, &[0, 1], false).expect("runs");
+        let a = rho * speed.abs();
+        let largest = speed.max(0.0);
+        let cold = (-a).exp();
+        let ks = largest + ((1.0 - cold) / a).ln() / rho;
+        let mean = largest - 1.0 / rho + speed.abs() * cold / (1.0 - cold);
+        for (found, exact) in found.iter().zip([ks, mean]) {
+            let off = (found.value.value - exact).abs();
+            let ratio = found.value.error / off;
+            assert!((0.3..3.0).contains(&ratio), "{file}: {ratio} {off}");
+        }
+        let sharpness = at.function(0).peak_sharpness;
+        let wide = a / f64::from(samples.unwrap_or(steps));
+        assert!((sharpness / wide - 1.0).abs() < 1e-9, "{sharpness} {wide}");
+    }
+}
+
+/// Integrals of quantities that are zero but for round-off take one cell a step, as others do.
+#[test]
+fn integrals_of_round_off_take_no_more_samples_than_others() {
+    for (joint, of, method) in [
+        (
+            "spherical",
+            json!({"joint_moment": {"joint": "j", "direction": [1, 2, 3]}}),
+            json!({"radau": {"stages": 3}}),
+        ),
+        (
+            "spherical",
+            json!({"joint_moment": {"joint": "j", "direction": [0, 0, 1]}}),
+            json!("dop853"),
+        ),
+        (
+            "revolute",
+            json!({"joint_moment": {"joint": "j", "direction": [0, 0, 1]}}),
+            json!({"radau": {"stages": 2}}),
+        ),
+        (
+            "revolute",
+            json!({"joint_force": {"joint": "j", "direction": [0, 0, 1]}}),
+            json!("dop853"),
+        ),
+        (
+            "revolute",
+            json!({"velocity": {"body": "b", "direction": [0, 0, 3]}}),
+            json!({"radau": {"stages": 3}}),
+        ),
+        (
+            "revolute",
+            json!({"acceleration": {"body": "b", "direction": [0, 0, 1]}}),
+            json!({"radau": {"stages": 3}}),
+        ),
+        (
+            "revolute",
+            json!({"angular_velocity": {"body": "b", "direction": [1, 0, 0]}}),
+            json!("dop853"),
+        ),
+        (
+            "revolute",
+            json!({"momentum": {"direction": [0, 0, 1]}}),
+            json!({"radau": {"stages": 2}}),
+        ),
+    ] {
+        for size in [1.0_f64, 1e-3, 1e3] {
+            let connection = match joint {
+                "spherical" => json!({"between": ["b", "ground"], "at": "b.p"}),
+                _ => json!({"between": ["b", "ground"], "at": "b.p", "axis": [0, 0, 1]}),
+            };
+            let gravity = if joint == "spherical" {
+                [1.0, -9.0, 2.0]
+            } else {
+                [1.0, -9.0, 0.0]
+            };
+            let file = json!({
+                "version": 1, "name": "zero", "gravity": gravity,
+                "bodies": {"b": {"shape": {"box": {"size": [size, 0.2 * size, 0.3 * size]}}, "mass": 1,
+                                 "points": {"p": [-0.5 * size, 0.1 * size, 0.0]},
+                                 "place": {"put": "p", "at": [0, 0, 0]}}},
+                "joints": {"j": {joint: connection}},
+                "simulation": {"duration": size.sqrt(), "tolerance": 1e-9, "method": method},
+                "functions": {"zero": {"integral": of}}
+            });
+            let problem = crate::tests::reference::documents::problem(&file);
+            let at = Evaluated::new(&problem, &problem.start()).expect("runs");
+            let cells = at.run.grid.all_cells().iter().max();
+            assert!(
+                cells.is_none_or(|&most| most <= 2),
+                "{joint} {of} {method} {size}: {cells:?}"
+            );
+        }
+    }
+}

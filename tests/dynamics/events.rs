@@ -342,3 +342,94 @@ fn a_problem_of_constraints_alone_is_made_feasible() {
     let done = documents::optimised(&clock(0.3, never));
     assert_ne!(done.optimum.status, "converged", "{}", done.optimum.message);
 }
+
+/// The time at which a ball that is thrown up at 5 m/s passes a height, whatever the samples: the first
+/// passage is found inside one step, and inside one interval of samples.
+#[test]
+fn both_passages_inside_one_interval_of_samples() {
+    let (u, g) = (5.0_f64, 9.81);
+    for (samples, spacing, h) in [
+        (Some(3), json!(1e-9), 0.63),
+        (Some(1), json!(1e-5), 1.27),
+        (Some(2), json!(1e-9), 1.274),
+        (None, json!(1e-9), 1.2742),
+        (None, json!(7), 0.4),
+        (Some(5), json!(9), 1.1),
+        (Some(2), json!(6), 0.9),
+    ] {
+        for method in [
+            json!("dop853"),
+            json!({"radau": {"stages": 3}}),
+            json!({"bdf": {"order": 2}}),
+        ] {
+            let is_bdf = method["bdf"].is_object();
+            let until = json!({"measure": height(), "reaches": h});
+            let mut simulation = json!({"duration": 20, "until": until, "method": method});
+            match (spacing.as_i64(), samples) {
+                (Some(_), Some(_)) | (None, _) if is_bdf => continue,
+                (Some(steps), _) if is_bdf => simulation["steps"] = json!(steps * 20),
+                (Some(steps), _) => simulation["steps"] = json!(steps),
+                (None, _) => simulation["tolerance"] = spacing.clone(),
+            }
+            if let Some(samples) = samples {
+                simulation["samples"] = json!(samples);
+            }
+            let mut file = throw(simulation);
+            file["bodies"]["ball"]["velocity"]["linear"] = json!([3, u, 0]);
+            let problem = problem(&file);
+            let what = format!("{method} {spacing} {samples:?} {h}");
+            let at = simulate(&problem, &problem.start())
+                .unwrap_or_else(|failure| panic!("{what}: {failure}"));
+            let root = (u * u - 2.0 * g * h).sqrt();
+            let exact = (u - root) / g;
+            // BDF2 is exact for parabolas but for its start, which is.
+            let off = (at.at.run.duration - exact).abs();
+            assert!(off <= 1e-9, "{what}: {} for {exact}", at.at.run.duration);
+            let (found, _) = at.at.gradients(&problem, &[0]).expect("differentiates");
+            // dT/du = −T / (u − g T) before the top.
+            let by_speed = -3.0 * exact / root;
+            assert!(
+                (found[0][0] - by_speed).abs() <= 1e-6,
+                "{what}: {}",
+                found[0][0]
+            );
+        }
+    }
+}
+
+/// A height that is touched at the top has no derivative; one that is missed is not reached.
+#[test]
+fn an_event_that_only_touches_is_named() {
+    let g = 9.81;
+    for (u, method) in [
+        (4.0_f64, json!("dop853")),
+        (0.3, json!({"radau": {"stages": 2}})),
+        (11.0, json!({"radau": {"stages": 3}})),
+    ] {
+        let top = u * u / (2.0 * g);
+        let of = |height_of_event: f64| {
+            let until = json!({"measure": height(), "reaches": height_of_event});
+            let mut file = throw(json!({"duration": 3, "until": until, "method": method}));
+            file["bodies"]["ball"]["velocity"]["linear"] = json!([3, u, 0]);
+            let problem = problem(&file);
+            simulate(&problem, &problem.start()).map(|found| {
+                let gradient = found.at.gradients(&problem, &[0]);
+                gradient.map(|_| ()).map_err(|failure| failure.to_string())
+            })
+        };
+        let said = match of(top) {
+            Ok(gradient) => gradient.expect_err("has no derivative"),
+            Err(failure) => failure.to_string(),
+        };
+        assert!(
+            said.contains("touches") && said.contains("derivative"),
+            "{u}: {said}"
+        );
+        assert!(of(top * (1.0 - 1e-6)).expect("crosses").is_ok());
+        let missed = of(top * (1.0 + 1e-4)).err().expect("misses");
+        assert!(
+            matches!(missed, IntegrationFailure::NotReached { .. }),
+            "{missed}"
+        );
+    }
+}

@@ -25,6 +25,7 @@ mod initial_conditions;
 mod joint_starts;
 mod joint_starts_in_loops;
 mod joints_and_drives;
+mod kinks;
 mod krylov_solver;
 mod limits_of_rounding;
 mod load_derivatives;

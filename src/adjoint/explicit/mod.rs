@@ -12,6 +12,8 @@
 //! df/dh = Σ k̄_j · k_j / h                       Sweep::leave_step
 //! ```
 //!
+//! Times and step sizes depend on the duration by [`Grid::rate`](crate::integrate::Grid) and `growth`.
+//!
 //! (Hager 2000; Sandu 2006.) It needs one symmetric solve per stage and function. All functions
 //! share the factors of a stage. If a sample lies inside the step, the stages 15 to 13 of the dense
 //! output come first. Test: tests/dynamics/gradients_match_complex_step.rs.
@@ -53,6 +55,7 @@ pub(super) fn gradients(
         }
         let h = run.duration * run.grid.width(n);
         let (begin, end) = (run.grid.ends()[n - 1], run.grid.ends()[n]);
+        let (growth, rate) = (run.grid.growth(begin), run.grid.rate(end));
         let first = first_sample(run, n, sample);
         let samples = first..=sample;
         sample = first - 1;
@@ -81,12 +84,12 @@ pub(super) fn gradients(
             }
             let (nq, nv, nc) = (from.q.len(), from.v.len(), from.lambda.len());
             let (q, v) = (row(data.q, nq, i), row(data.v, nv, i));
-            let fraction = begin + run.grid.width(n) * C[i];
+            let rate = run.grid.rate(begin) + run.grid.width(n) * growth * C[i];
             field.set_state(q, v, run.duration * begin + h * C[i]);
             field.factorise()?;
             let found = (row(data.a, nv, i), row(data.lambda, nc, i));
             for sweep in sweeps.iter_mut().filter(|sweep| sweep.touched[i]) {
-                let (q, v) = sweep.stage(i, field, (q, v, fraction), found);
+                let (q, v) = sweep.stage(i, field, (q, v, rate), found);
                 sweep.spread(A[i], (&q, &v), h);
                 sweep.workspace.back([q, v]);
             }
@@ -100,15 +103,15 @@ pub(super) fn gradients(
         field.set_state(to.q, to.v, run.duration * end);
         field.factorise().map_err(singular)?;
         for sweep in sweeps.iter_mut().filter(|sweep| sweep.begun) {
-            sweep.node(&mut field, to, end);
-            projection::pull_back(sweep, &mut field, data, to, (&mut scratch, end));
+            sweep.node(&mut field, to, rate);
+            projection::pull_back(sweep, &mut field, data, to, (&mut scratch, rate));
             sweep.end(h);
         }
         for i in (1..STAGES).rev() {
             stage(i, &mut field, &mut sweeps).map_err(singular)?;
         }
         for sweep in &mut sweeps {
-            sweep.leave_step(data, run.duration);
+            sweep.leave_step(data, (run.duration, growth));
         }
     }
     counts.factorisations += field.factorisations;

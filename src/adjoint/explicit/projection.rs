@@ -13,14 +13,14 @@ use crate::system::flexible;
 const REFINEMENTS: usize = 40;
 
 /// Pulls the cotangents of the projected state (`sweep.of`) back to the state before the
-/// projection. `field` is evaluated and factorised at the projected state, at the `fraction` of the
-/// duration. `scratch` receives derivatives that are not used.
+/// projection. `field` is evaluated and factorised at the projected state, whose time has this `rate`
+/// in the duration. `scratch` receives derivatives that are not used.
 pub(super) fn pull_back(
     sweep: &mut Sweep,
     field: &mut Accelerations<f64>,
     data: StepView<f64>,
     to: NodeView<f64>,
-    (scratch, fraction): (&mut Model<f64>, f64),
+    (scratch, rate): (&mut Model<f64>, f64),
 ) {
     let numbering = field.numbering;
     let nv = to.v.len();
@@ -96,7 +96,7 @@ pub(super) fn pull_back(
     let mut unused = workspace.zeros(nv);
     by_time += field.pull_rate(&psi[..nv], data.s, &mut unused, cot);
     by_time += field.pull_constraints(&psi[nv..], &mut unused, cot);
-    *by_duration += fraction * by_time;
+    *by_duration += rate * by_time;
     if !field.model.flexible.is_empty() {
         let away = flexible::distance(numbering, to.q, data.q_raw);
         let at = (field.model, numbering);

@@ -70,6 +70,7 @@ impl<'a> Sweep<'a> {
             (SamplePlace::Inside { step, theta }, Some((data, from))) => {
                 let width = run.grid.width(step);
                 let h = run.duration * width;
+                let growth = run.grid.growth(run.grid.ends()[step - 1]);
                 // A function depends on few bodies. Only the range from the first to the last is
                 // processed.
                 let bodies = touched_bodies(numbering, [y, v, a]);
@@ -101,7 +102,7 @@ impl<'a> Sweep<'a> {
                         add_scaled(by_a, rate, a);
                         // Accelerations are not multiplied by h, which `leave_step` assumes.
                         let slope = dot(a, &row(data.a, nv, i)[in_v.clone()]);
-                        self.of.by_duration -= rate * slope / run.duration;
+                        self.of.by_duration -= rate * slope / run.duration * growth;
                     }
                 }
                 add_scaled(&mut self.before.0[in_q], 1.0, q);
@@ -118,12 +119,12 @@ impl<'a> Sweep<'a> {
     }
 
     /// Pulls the cotangents of the derivatives at stage i back to its state, at which `field` is
-    /// evaluated. Returns the cotangents (q, v) of this state.
+    /// evaluated; its time has this `rate` in the duration. Returns the cotangents (q, v) of this state.
     pub(crate) fn stage(
         &mut self,
         i: usize,
         field: &mut Accelerations<f64>,
-        (q, v, fraction): (&[f64], &[f64], f64),
+        (q, v, rate): (&[f64], &[f64], f64),
         found: (&[f64], &[f64]),
     ) -> (Vec<f64>, Vec<f64>) {
         let numbering = field.numbering;
@@ -138,7 +139,7 @@ impl<'a> Sweep<'a> {
         bodies::pull_rates(numbering, (q, v), qdot_bar, (&mut q_bar, &mut v_bar));
         let cot = &mut self.of.cot.model;
         let by_time = field.pull_back(found, a_bar, (&mut y, &mut v_bar), cot);
-        self.of.by_duration += fraction * by_time;
+        self.of.by_duration += rate * by_time;
         bodies::add_unit_cotangent(numbering, q, &y, &mut q_bar);
         self.workspace.back([y]);
         (q_bar, v_bar)
@@ -161,13 +162,8 @@ impl<'a> Sweep<'a> {
     }
 
     /// Pulls the cotangents of the derivatives at the node after the step back to its state, at
-    /// which `field` is evaluated.
-    pub(crate) fn node(
-        &mut self,
-        field: &mut Accelerations<f64>,
-        to: NodeView<f64>,
-        fraction: f64,
-    ) {
+    /// which `field` is evaluated; its time has this `rate` in the duration.
+    pub(crate) fn node(&mut self, field: &mut Accelerations<f64>, to: NodeView<f64>, rate: f64) {
         let (nq, nv) = (to.q.len(), to.v.len());
         if self.touched[END] {
             add_scaled(&mut self.node.0, 1.0, row(&self.qdot, nq, END));
@@ -184,7 +180,7 @@ impl<'a> Sweep<'a> {
             let found = (to.a, to.lambda);
             let cot = &mut self.of.cot.model;
             let by_time = field.pull_back(found, &self.node.1, (&mut y, &mut v), cot);
-            self.of.by_duration += fraction * by_time;
+            self.of.by_duration += rate * by_time;
             bodies::add_unit_cotangent(field.numbering, to.q, &y, &mut q);
             self.of.q.add(1.0, &q);
             self.of.v.add(1.0, &v);
@@ -213,14 +209,15 @@ impl<'a> Sweep<'a> {
         self.workspace.back([q, v]);
     }
 
-    /// Moves to the node before a step of a run with this duration. The derivatives k_i of the
-    /// stages always have weights proportional to the step size h, so h df/dh = Σ k̄_i · k_i.
-    pub(crate) fn leave_step(&mut self, data: StepView<f64>, duration: f64) {
+    /// Moves to the node before a step of a run with this duration T, whose size h has the derivative
+    /// dh/dT = h `growth` / T. The derivatives k_i of the stages always have weights proportional to the step size h,
+    /// so h df/dh = Σ k̄_i · k_i.
+    pub(crate) fn leave_step(&mut self, data: StepView<f64>, (duration, growth): (f64, f64)) {
         let (nq, nv) = (self.before.0.len(), self.before.1.len());
         for i in (0..ALL).filter(|&i| self.touched[i]) {
             let slope = dot(row(&self.qdot, nq, i), row(data.qdot, nq, i))
                 + dot(row(&self.a, nv, i), row(data.a, nv, i));
-            self.of.by_duration += slope / duration;
+            self.of.by_duration += slope / duration * growth;
         }
         self.of.q.add(1.0, &self.before.0);
         self.of.v.add(1.0, &self.before.1);

@@ -262,14 +262,14 @@ impl<'a> Moving<'_, 'a> {
             let cot = &mut sweep.of.cot.model;
             let at = stage.instant();
             let by_time = equations.pull_back_projected(&at, psi, cot, &mut change[..nv]);
-            sweep.of.by_duration += step.end * by_time;
+            sweep.of.by_duration += step.rate * by_time;
 
             let (total, own) = (&mut of.total, &mut of.own);
             rates_of(model, numbering, &stage.q, psi, own);
             add(total, c, own);
             move_back(sweep, numbering, stage, change, &total.0);
             add(&mut sweep.rates, 1.0, own);
-            sweep.of.by_duration -= step.width * work(&sweep.rates, stage) / h;
+            sweep.of.by_duration -= step.growth * work(&sweep.rates, stage) / h;
             let rates = [&sweep.rates.0, &sweep.rates.1];
             for (memory, rates) in sweep.memory.iter_mut().zip(rates) {
                 for (k, rate) in rates.iter().enumerate() {

@@ -77,17 +77,19 @@ pub(super) fn gradients(
         }
         while run.places[sample].step() == k {
             let own = (&scheme, &step.from, step.stages());
-            let add = |sweep: &mut Sweep| sweep.sample(scene, run, sample, own, step.width);
+            let size = (step.size, step.growth);
+            let add = |sweep: &mut Sweep| sweep.sample(scene, run, sample, own, size);
             match shells {
                 true => sweeps.par_iter_mut().for_each(add),
                 false => sweeps.iter_mut().for_each(add),
             }
             sample -= 1;
         }
-        let found = match Formula::of_step(run.method, k) {
+        let found = match Formula::of_step(run.method, step.in_part) {
             Some(formula) => {
                 let known = shells && k > 1;
-                let ahead = known.then(|| Formula::of_step(run.method, k - 1)).flatten();
+                let before_it = || Formula::of_step(run.method, run.grid.in_part(k - 1));
+                let ahead = known.then(before_it).flatten();
                 if ahead.is_some() {
                     before.read(run, replay.block(k - 1)?, k - 1);
                 }
@@ -110,9 +112,9 @@ pub(super) fn gradients(
             step: k,
             place,
         })?;
-        if k == 1 && remembers_start(run.method) {
+        if step.in_part == 1 && remembers_start(run.method) {
             for sweep in &mut sweeps {
-                sweep.starting_memory(&start, step.size, step.width);
+                sweep.starting_memory(&step.from, (step.size, step.growth));
             }
         }
         counts.steps += 1;
@@ -125,7 +127,7 @@ pub(super) fn gradients(
     let mut saddle = SaddlePoint::new(model, numbering);
     let start = &start;
     for sweep in &mut sweeps {
-        sweep.sample(scene, run, 0, (&scheme, start, &[]), 0.0);
+        sweep.sample(scene, run, 0, (&scheme, start, &[]), (0.0, 0.0));
         sweep.pull_starting_rates(numbering, start);
         let Sweep { of, rates, .. } = sweep;
         of.finish(scene, run, &mut saddle, &rates.1, &mut counts)?;

@@ -125,7 +125,7 @@ impl<'a> BackwardStage<'a> {
     ) -> Result<(), String> {
         let (model, numbering, scheme) = (self.model, self.numbering, self.scheme);
         let (nv, n) = (numbering.velocities(), self.equations.order());
-        let (stages, h, width) = (step.stages(), step.size, step.width);
+        let (stages, h, growth) = (step.stages(), step.size, step.growth);
         let equations = &mut self.equations;
         if let Some(rows) = step.left_out {
             equations.leave_out(rows);
@@ -189,14 +189,14 @@ impl<'a> BackwardStage<'a> {
                 let cot = &mut sweep.of.cot.model;
                 let held = &mut change[..nv];
                 let by_time = equations.pull_back_projected(&stage.instant(), part, cot, held);
-                sweep.of.by_duration += (step.end - width * (1.0 - scheme.nodes[i])) * by_time;
+                sweep.of.by_duration += (step.rate - growth * (1.0 - scheme.nodes[i])) * by_time;
                 let own = &mut self.own;
                 rates_of(model, numbering, &stage.q, part, own);
                 spread(scheme, i, own, h, by);
                 slope += work(own, stage);
             }
             slope += work(&sweep.rates, &stages[last]);
-            sweep.of.by_duration -= width * slope / h;
+            sweep.of.by_duration -= growth * slope / h;
             add_state(&mut by[last], &sweep.of);
             for ((stage, change), total) in stages.iter().zip(&self.changes).zip(&*by) {
                 move_back(sweep, numbering, stage, change, &total.0);

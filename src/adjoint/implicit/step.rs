@@ -9,9 +9,11 @@ use crate::system::{Numbering, RedundantRows};
 pub(super) struct Step<'a> {
     /// Its number, from 1.
     pub number: usize,
-    /// Its width and its end, as parts of the duration.
-    pub width: f64,
-    pub end: f64,
+    /// Its number since the start or since a kink, from 1.
+    pub in_part: usize,
+    /// Derivatives of its size and of its end in the duration.
+    pub growth: f64,
+    pub rate: f64,
     /// Its size \[s\].
     pub size: f64,
     /// Redundant rows that are left out of its equations.
@@ -28,8 +30,9 @@ impl<'a> Step<'a> {
         let from = Stage::zero(numbering);
         Self {
             number: 0,
-            width: 0.0,
-            end: 0.0,
+            in_part: 1,
+            growth: 0.0,
+            rate: 0.0,
             size: 0.0,
             left_out: None,
             stages: vec![from.clone(); stages],
@@ -41,9 +44,11 @@ impl<'a> Step<'a> {
     /// Reads step `number` of a run from a block that holds it.
     pub(super) fn read(&mut self, run: &'a Trajectory<f64>, block: &Block<f64>, number: usize) {
         self.number = number;
-        self.width = run.grid.width(number);
-        self.end = run.grid.ends()[number];
-        self.size = run.duration * self.width;
+        let (width, ends) = (run.grid.width(number), run.grid.ends());
+        self.in_part = run.grid.in_part(number);
+        self.growth = width * run.grid.growth(ends[number - 1]);
+        self.rate = run.grid.rate(ends[number]);
+        self.size = run.duration * width;
         self.left_out = run.grid.left_out(number);
         block.read_end(number - 1, &mut self.from);
         self.count = block.read(number, &mut self.stages);

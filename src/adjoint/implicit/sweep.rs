@@ -53,14 +53,14 @@ impl<'a> Sweep<'a> {
     }
 
     /// Adds the derivatives of the function at sample k. `step` has the coefficients, the state at
-    /// the start of the step, and its stages.
+    /// the start of the step, and its stages; (h, dh/dT) its size.
     pub(crate) fn sample(
         &mut self,
         scene: &Scene<f64>,
         run: &Trajectory<f64>,
         k: usize,
         (scheme, from, stages): (&Scheme, &Stage<f64>, &[Stage<f64>]),
-        width: f64,
+        (h, growth): (f64, f64),
     ) {
         if !self.of.linearise(scene, run, k) {
             return;
@@ -71,7 +71,6 @@ impl<'a> Sweep<'a> {
         q.fill(0.0);
         match run.places[k] {
             SamplePlace::Inside { theta, .. } => {
-                let h = run.duration * width;
                 dense(scheme, from, stages, h, theta, &mut self.at);
                 bodies::add_unit_cotangent(numbering, &self.at.q, y, q);
                 let (w, rate) = scheme.dense_weights(theta);
@@ -80,7 +79,7 @@ impl<'a> Sweep<'a> {
                     add_scaled(by_v, w[i], v);
                     add_scaled(by_v, rate[i] / h, a);
                 }
-                self.of.by_duration -= width * dot(a, &self.at.vdot) / h;
+                self.of.by_duration -= growth * dot(a, &self.at.vdot) / h;
                 add_scaled(&mut self.before.0, 1.0, q);
                 add_scaled(&mut self.before.1, 1.0, v);
             }
@@ -93,14 +92,18 @@ impl<'a> Sweep<'a> {
         }
     }
 
-    /// Pulls the cotangents of a memory that starts as h times the initial rates back to these.
-    pub(crate) fn starting_memory(&mut self, start: &Stage<f64>, h: f64, width: f64) {
-        let [by_q, by_v] = &self.memory;
-        for (q, v) in by_q.iter().zip(by_v) {
+    /// Pulls the cotangents of a memory that starts as h times the rates at `start` back to these;
+    /// `growth` is dh/dT.
+    pub(crate) fn starting_memory(&mut self, start: &Stage<f64>, (h, growth): (f64, f64)) {
+        let [by_q, by_v] = &mut self.memory;
+        for (q, v) in by_q.iter().zip(&*by_v) {
             add_scaled(&mut self.rates.0, h, q);
             add_scaled(&mut self.rates.1, h, v);
-            self.of.by_duration += width * (dot(q, &start.qdot) + dot(v, &start.vdot));
+            self.of.by_duration += growth * (dot(q, &start.qdot) + dot(v, &start.vdot));
         }
+        by_q.iter_mut()
+            .chain(by_v)
+            .for_each(|memory| memory.fill(0.0));
     }
 
     /// Pulls the cotangent of the initial q̇ = T(q) v back to the initial state.

@@ -8,9 +8,9 @@ use super::tape::{Block, Tape};
 use crate::integrate::control::Controller;
 use crate::integrate::energy::Ledger;
 use crate::integrate::failure::IntegrationFailure;
-use crate::integrate::grid::{SamplePlace, place};
+use crate::integrate::grid::{Grid, SamplePlace, place};
 use crate::integrate::quadrature;
-use crate::integrate::quadrature::Samples;
+use crate::integrate::quadrature::{Intervals, Samples};
 use crate::integrate::scale::Scale;
 use crate::integrate::settings::{Method, Settings, Spacing};
 use crate::integrate::singular::{self, Steadiness};
@@ -55,24 +55,25 @@ pub(crate) fn march<S: SolveScalar>(
     };
     let scale = Scale::of(model, numbering, &start, duration.re());
     let mut controller = Controller::new(settings, ORDER, &scale, (model, duration.re()));
-    let leap = stepper.field.closes_loops() && !matches!(settings.spacing, Spacing::Steps(_));
+    let equal = settings.spacing.is_equal();
+    let leap = stepper.field.closes_loops() && !equal;
     let block = Block::new(numbering, settings.samples, leap);
     let memory = (settings.memory, block.room());
     let tape = trajectory::Tape::Explicit(Tape::new(block, memory, controller.steps()));
     let mut run = Trajectory::start(numbering.clone(), Method::Dop853, duration, start, tape);
     run.grid = controller.growing();
-    run.take_cells(&settings.spacing, settings.samples);
+    let intervals = controller.intervals(settings.samples);
+    run.has_cells = matches!(settings.samples, Samples::Quadrature(_));
     let mut steadiness = Steadiness::new(numbering);
     let given = !matches!(settings.spacing, Spacing::Tolerance(_));
-    let equal = matches!(settings.spacing, Spacing::Steps(_));
     let most = singular::most(match settings.spacing {
         Spacing::Tolerance(tolerance) => Some(tolerance),
         Spacing::Steps(_) | Spacing::Frozen(_) => None,
     });
     // Frozen steps were not stiff when they were chosen. Their error is checked instead.
     let mut stiffness = match settings.spacing {
-        Spacing::Frozen(_) => None,
-        Spacing::Steps(_) => Some(Stiffness::new(Watch::Stability)),
+        Spacing::Steps(_) | Spacing::Frozen(_) if equal => Some(Stiffness::new(Watch::Stability)),
+        Spacing::Steps(_) | Spacing::Frozen(_) => None,
         Spacing::Tolerance(_) => Some(Stiffness::new(watch_for)),
     };
     let (mut from, mut to) = (node.clone(), node);
@@ -84,7 +85,7 @@ pub(crate) fn march<S: SolveScalar>(
     stepper.field.leave_out(left_out);
     run.grid.leave_out(left_out);
     // The history of adaptive steps grows with them.
-    reserve(&mut run, settings);
+    reserve(&mut run, controller.given(), settings.samples);
     if stepper.field.closes_loops() {
         let before = stepper.field.memory();
         stepper.field.set_state(&from.q, &from.v, duration * 0.0);
@@ -102,11 +103,14 @@ pub(crate) fn march<S: SolveScalar>(
         ledger.enter(model, &motions, 0.0);
     }
     while let Some(width) = controller.next(run.grid.reached()) {
-        let h = duration * width;
-        let end = controller.end(run.grid.reached(), width);
+        let begin = run.grid.reached();
+        let h = run.grid.size(duration, width, begin);
+        let start = run.grid.time(duration, begin);
+        let end = controller.end(begin, width);
+        let end_time = run.grid.time(duration, end);
         let mut exchanged = None;
         let tried = stepper
-            .stages(from.view(), (duration * run.grid.reached(), h))
+            .stages(from.view(), (start, h))
             .map(|()| error(&mut stepper, &scale, from.view(), h))
             .and_then(|error| {
                 // The tolerance judges steps that may be replaced by others.
@@ -116,7 +120,7 @@ pub(crate) fn march<S: SolveScalar>(
                 if !controller.judge(error) {
                     return Ok(None);
                 }
-                stepper.finish(&mut to, duration * end)?;
+                stepper.finish(&mut to, end_time)?;
                 if !stepper.field.closes_loops() {
                     return Ok(Some(f64::INFINITY));
                 }
@@ -137,17 +141,15 @@ pub(crate) fn march<S: SolveScalar>(
                 if choices.is_empty() {
                     exchanged = stepper.field.exchanged(EXCHANGE_WEIGHT);
                 }
-                let begin = run.grid.reached();
                 let cells = run.grid.cells(run.grid.steps() + 1);
-                if quadrature::looks_inside(settings.samples, next, (end, cells)) {
-                    let start = duration * begin;
+                if quadrature::looks_inside(settings.samples, (next, &intervals), (end, cells)) {
                     stepper.dense_stages((from.view(), to.view()), (start, h))?;
                     let error = controller.allowed().max(LEAST_ERROR);
                     let open = open(&mut stepper, &scale, from.view(), (start, h));
                     if open > error * if given { OPEN_GIVEN } else { OPEN } || open.is_nan() {
                         return Err(StepFailure::Open);
                     }
-                    stepper.field.set_state(&to.q, &to.v, duration * end);
+                    stepper.field.set_state(&to.q, &to.v, end_time);
                 }
                 Ok(Some(steady))
             });
@@ -186,7 +188,7 @@ pub(crate) fn march<S: SolveScalar>(
             controller.expect(steadiness.magnified(steady), ahead);
         }
         // The equations are still evaluated at the end of the step.
-        watch(model, (&stepper.field.motions, duration * end), number)?;
+        watch(model, (&stepper.field.motions, end_time), number)?;
         if let Some(ledger) = ledger.as_mut().filter(|_| Ledger::is_due(number)) {
             ledger.enter(model, &stepper.field.motions, duration.re() * end);
         }
@@ -205,8 +207,8 @@ pub(crate) fn march<S: SolveScalar>(
             &mut run,
             &mut stepper,
             (from.view(), to.view()),
-            settings,
-            &mut next,
+            settings.samples,
+            (&mut next, &intervals),
         )
         .map_err(|failure| failed(failure, (model, numbering), (number, duration.re() * end)))?;
         let tape = tape_of(&mut run);
@@ -237,14 +239,11 @@ pub(crate) fn march<S: SolveScalar>(
 }
 
 /// Reserves memory for the history of a run whose steps are known.
-fn reserve<S: SolveScalar>(run: &mut Trajectory<S>, settings: &Settings) {
-    let (steps, grid) = match &settings.spacing {
-        Spacing::Steps(steps) => (*steps, None),
-        Spacing::Frozen(grid) => (grid.steps(), Some(grid)),
-        Spacing::Tolerance(_) => return,
-    };
-    let samples = settings.samples.count(steps, grid);
-    run.reserve(steps, samples);
+fn reserve<S: SolveScalar>(run: &mut Trajectory<S>, given: Option<&Grid>, samples: Samples) {
+    if let Some(grid) = given {
+        let steps = grid.steps();
+        run.reserve(steps, samples.count(steps, Some(grid)));
+    }
 }
 
 fn tape_of<S: SolveScalar>(run: &mut Trajectory<S>) -> &mut Tape<S> {
@@ -271,22 +270,23 @@ fn sample<S: SolveScalar>(
     run: &mut Trajectory<S>,
     stepper: &mut Stepper<S>,
     (from, to): (NodeView<S>, NodeView<S>),
-    settings: &Settings,
-    next: &mut usize,
+    samples: Samples,
+    next: (&mut usize, &Intervals),
 ) -> Result<(), StepFailure> {
     let k = run.grid.steps();
-    let h = run.duration * run.grid.width(k);
+    let start = run.grid.ends()[k - 1];
+    let h = run.grid.size(run.duration, run.grid.width(k), start);
     let step = run.grid.step(k);
-    if let Samples::Quadrature(_) = settings.samples {
+    if let Samples::Quadrature(_) = samples {
         run.weigh_start(&step);
     }
-    for due in quadrature::due(settings.samples, next, step) {
+    for due in quadrature::due(samples, next, step) {
         let place = place(&run.grid, k, due.at);
         match place {
             SamplePlace::Node(_) => run.push(due, place, [to.q, to.v, to.a, &[]]),
             SamplePlace::Inside { theta, .. } => {
                 if !stepper.data.dense {
-                    let start = run.duration * run.grid.ends()[k - 1];
+                    let start = run.grid.time(run.duration, start);
                     stepper.dense_stages((from, to), (start, h))?;
                     run.counts.evaluations += super::tableau::ALL - super::tableau::END - 1;
                 }

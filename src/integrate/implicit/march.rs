@@ -10,9 +10,9 @@ use crate::integrate::energy::Ledger;
 use crate::integrate::failure::IntegrationFailure;
 use crate::integrate::grid::{Grid, SamplePlace, place};
 use crate::integrate::quadrature;
-use crate::integrate::quadrature::Samples;
+use crate::integrate::quadrature::{Due, Samples};
 use crate::integrate::scale::Scale;
-use crate::integrate::settings::{Method, Settings, Spacing};
+use crate::integrate::settings::{Method, Settings};
 use crate::integrate::singular::{MOST_IMPLICIT, Steadiness};
 use crate::integrate::trajectory::{self, Trajectory};
 use crate::integrate::{close, watch};
@@ -128,7 +128,7 @@ fn march_until<S: SolveScalar>(
     run.lambda = lambda;
     run.solver = settings.solver;
     run.grid = match &stretch {
-        Some(stretch) => Grid::growing_from(stretch.from),
+        Some(stretch) => controller.growing().from(stretch.from),
         None => controller.growing(),
     };
     // A formula gives the motion only at the ends of its steps.
@@ -139,9 +139,10 @@ fn march_until<S: SolveScalar>(
             Samples::StepEnds | Samples::Uniform(_) | Samples::Quadrature(_) => Samples::StepEnds,
         },
     };
-    run.take_cells(&settings.spacing, samples);
+    let intervals = controller.intervals(samples);
+    run.has_cells = matches!(samples, Samples::Quadrature(_));
     // The history of adaptive steps grows with them.
-    reserve(&mut run, &settings.spacing, samples);
+    reserve(&mut run, controller.given(), samples);
     let mut next = 1;
     let mut motions = Vec::new();
     let watched =
@@ -171,12 +172,14 @@ fn march_until<S: SolveScalar>(
         {
             break;
         }
-        let h = duration * width;
-        let end = controller.end(run.grid.reached(), width);
+        let begin = run.grid.reached();
+        let h = run.grid.size(duration, width, begin);
+        let end = controller.end(begin, width);
         let k = run.grid.steps() + 1;
+        let in_part = run.grid.in_part(k);
         let at = (k, duration.re() * end);
-        let start = duration * run.grid.reached();
-        let count = match solver.step(&mut past, (start, h), at, &mut run.counts) {
+        let times = (run.grid.time(duration, begin), h);
+        let count = match solver.step(&mut past, times, (in_part, at), &mut run.counts) {
             Ok(count) => count,
             Err(failure) if controller.give_up(false) => return Err(failure),
             Err(_) => {
@@ -223,11 +226,12 @@ fn march_until<S: SolveScalar>(
         }
         run.grid.push(end);
         let all = (&past.from, stages);
-        sample(&mut run, &scheme, all, samples, (&mut next, &mut inside));
+        let due = quadrature::due(samples, (&mut next, &intervals), run.grid.step(k));
+        sample(&mut run, &scheme, all, (samples, due), &mut inside);
         if tape_of(&mut run).keeps(k) {
             tape_of(&mut run).block.push(&past.from, stages);
         }
-        solver.remember(count, k);
+        solver.remember(count, in_part);
         // Rows are exchanged only between steps, so that every step has smooth equations.
         let exchanged = match choices.is_empty() && loops {
             true => field.exchanged(EXCHANGE_WEIGHT),
@@ -278,14 +282,11 @@ fn tape_of<S: SolveScalar>(run: &mut Trajectory<S>) -> &mut Tape<S> {
 }
 
 /// Reserves memory for the samples of a run whose steps are known.
-fn reserve<S: SolveScalar>(run: &mut Trajectory<S>, spacing: &Spacing, samples: Samples) {
-    let (steps, grid) = match spacing {
-        Spacing::Steps(steps) => (*steps, None),
-        Spacing::Frozen(grid) => (grid.steps(), Some(grid)),
-        Spacing::Tolerance(_) => return,
-    };
-    let samples = samples.count(steps, grid);
-    run.reserve(steps, samples);
+fn reserve<S: SolveScalar>(run: &mut Trajectory<S>, given: Option<&Grid>, samples: Samples) {
+    if let Some(grid) = given {
+        let steps = grid.steps();
+        run.reserve(steps, samples.count(steps, Some(grid)));
+    }
 }
 
 /// Adds the samples of the accepted step, from its start and its stages.
@@ -293,17 +294,19 @@ fn sample<S: SolveScalar>(
     run: &mut Trajectory<S>,
     scheme: &Scheme,
     (from, stages): (&Stage<S>, &[Stage<S>]),
-    samples: Samples,
-    (next, inside): (&mut usize, &mut Stage<S>),
+    (samples, due): (Samples, impl Iterator<Item = Due>),
+    inside: &mut Stage<S>,
 ) {
     let k = run.grid.steps();
-    let h = run.duration * run.grid.width(k);
+    let h = run
+        .grid
+        .size(run.duration, run.grid.width(k), run.grid.ends()[k - 1]);
     let last = &stages[stages.len() - 1];
     let step = run.grid.step(k);
     if let Samples::Quadrature(_) = samples {
         run.weigh_start(&step);
     }
-    for due in quadrature::due(samples, next, step) {
+    for due in due {
         let place = place(&run.grid, k, due.at);
         match place {
             SamplePlace::Node(_) => {

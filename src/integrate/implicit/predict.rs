@@ -80,6 +80,11 @@ impl<S: SolveScalar> Past<S> {
         }
     }
 
+    /// Forgets the increments of earlier steps, whose size may differ from that of the next one.
+    pub(crate) fn forget_increments(&mut self) {
+        self.known = 0;
+    }
+
     /// Moves past a step of size h with the first `count` of the `stages`. `stages` becomes
     /// workspace for the next step.
     pub(crate) fn advance(&mut self, h: S, stages: &mut Vec<Stage<S>>, count: usize) {

@@ -61,15 +61,16 @@ impl March for Replayer<'_> {
         let (duration, grid) = (self.run.duration, &self.run.grid);
         let (start, h) = (duration * grid.ends()[k - 1], duration * grid.width(k));
         let at = (k, duration * grid.ends()[k]);
+        let in_part = grid.in_part(k);
         let (past, solver) = (&mut self.past, &mut self.solver);
         if let Some(rows) = grid.left_out(k) {
             solver.leave_out(rows);
         }
-        let count = solver.step(past, (start, h), at, &mut self.counts)?;
+        let count = solver.step(past, (start, h), (in_part, at), &mut self.counts)?;
         if let Some(block) = block {
             block.push(&past.from, &solver.stages[..count]);
         }
-        solver.remember(count, k);
+        solver.remember(count, in_part);
         past.advance(h, &mut solver.stages, count);
         turns::count(self.model, &self.run.numbering, &mut past.from.q);
         Ok(())

@@ -150,17 +150,21 @@ impl<'a, S: SolveScalar> Solver<'a, S> {
         }
     }
 
-    /// Makes step `at.0` of size `h`; returns its number of stages.
+    /// Makes step `at.0` of size `h`, the step `in_part` since the start or since a kink; returns its
+    /// number of stages. A formula starts anew at a kink.
     pub(crate) fn step(
         &mut self,
         past: &mut Past<S>,
         (start, h): (S, S),
-        at: (usize, f64),
+        (in_part, at): (usize, (usize, f64)),
         counts: &mut WorkCounts,
     ) -> Result<usize, IntegrationFailure> {
         let (model, real, numbering) = (self.model, self.real, self.numbering);
         let stages = &mut self.stages;
-        let Some(formula) = Formula::of_step(self.method, at.0) else {
+        if in_part == 1 {
+            past.forget_increments();
+        }
+        let Some(formula) = Formula::of_step(self.method, in_part) else {
             past.predict_stages(numbering, self.scheme, h, stages);
             let nodes = &self.scheme.nodes;
             let place = |stages: &mut [Stage<S>], from: &Stage<S>| {
@@ -185,7 +189,7 @@ impl<'a, S: SolveScalar> Solver<'a, S> {
             }
             return Ok(stages.len());
         };
-        if at.0 == 1 && remembers_start(self.method) {
+        if in_part == 1 && remembers_start(self.method) {
             for (memory, rates) in self
                 .memory
                 .iter_mut()
@@ -227,10 +231,11 @@ impl<'a, S: SolveScalar> Solver<'a, S> {
         found.map(|()| 1)
     }
 
-    /// Updates the memory after step k with `count` stages.
-    pub(crate) fn remember(&mut self, count: usize, k: usize) {
+    /// Updates the memory after a step with `count` stages, the step `in_part` since the start or since
+    /// a kink.
+    pub(crate) fn remember(&mut self, count: usize, in_part: usize) {
         let last = &self.stages[count - 1];
-        let formula = Formula::of_step(self.method, k);
+        let formula = Formula::of_step(self.method, in_part);
         for (memory, delta) in self.memory.iter_mut().zip([&last.dq, &last.dv]) {
             match &formula {
                 Some(formula) => {

@@ -226,6 +226,8 @@ mod tests {
                 method_reason: None,
                 cells: Vec::new(),
                 ends: vec![0.0, 1.0],
+                kinks: Vec::new(),
+                equal: false,
                 left_out: Vec::new(),
             }),
             event: None,
@@ -312,7 +314,7 @@ mod tests {
         refused(
             "dop853",
             "euler",
-            "2: found the method \"euler\", expected dop853, radau2 or radau3",
+            "2: found the method \"euler\", expected the name of a method, such as dop853, radau3 or bdf2",
         );
         let line = "a whole evaluation, as every line but the last one is";
         let second = whole.lines().nth(1).expect("a line");

@@ -215,6 +215,12 @@ pub(crate) struct StepsInUse {
     /// number is then that of the problem.
     #[serde(default, skip_serializing_if = "Vec::is_empty")]
     pub ends: Vec<f64>,
+    /// Kinks of loads and drives at which steps end. None if there are none.
+    #[serde(default, skip_serializing_if = "Vec::is_empty")]
+    pub kinks: Vec<f64>,
+    /// Whether the steps are equal between kinks, as the problem gives them.
+    #[serde(default, skip_serializing_if = "std::ops::Not::not")]
+    pub equal: bool,
     /// Cells of the steps for sums over the motion. None if each step has one.
     #[serde(default, skip_serializing_if = "Vec::is_empty")]
     pub cells: Vec<u32>,
@@ -238,7 +244,8 @@ pub(crate) struct RowsLeftOut {
 impl StepsInUse {
     /// The steps with their redundant rows. `None` if they are equal, or not valid for any motion.
     pub(crate) fn grid(&self) -> Option<Grid> {
-        let mut grid = Grid::from_ends(self.ends.clone())?.with_cells(self.cells.clone());
+        let grid = Grid::from_ends(self.ends.clone())?.with_cells(self.cells.clone());
+        let mut grid = grid.with_kinks(self.kinks.clone(), self.equal)?;
         for RowsLeftOut { from, rows, of } in &self.left_out {
             grid.leave_out_from(*from, &RedundantRows::from_rows(rows, *of)?);
         }
@@ -247,9 +254,12 @@ impl StepsInUse {
 
     /// What was found and expected, if no motion can have such steps.
     fn fault(&self) -> Option<(String, &'static str)> {
-        if Method::adaptive(&self.method).is_none() {
+        if Method::named(&self.method).is_none() {
             let found = format!("the method {:?}", self.method);
-            return Some((found, "dop853, radau2 or radau3"));
+            return Some((
+                found,
+                "the name of a method, such as dop853, radau3 or bdf2",
+            ));
         }
         let steps = self.ends.len().saturating_sub(1);
         if !self.cells.is_empty() && self.cells.len() != steps {
@@ -266,8 +276,14 @@ impl StepsInUse {
         if let Some(found) = self.left_out.iter().find_map(row) {
             return Some((found, "numbers of rows, counted from 0"));
         }
-        if self.ends.is_empty() || Grid::from_ends(self.ends.clone()).is_some() {
+        if self.ends.is_empty() {
             return None;
+        }
+        if let Some(grid) = Grid::from_ends(self.ends.clone()) {
+            return match grid.with_kinks(self.kinks.clone(), self.equal) {
+                Some(_) => None,
+                None => Some((format!("kinks at {:?}", self.kinks), "ends of steps")),
+            };
         }
         let falls = self.ends.windows(2).find(|pair| pair[0] >= pair[1]);
         let found = match (falls, &self.ends[..]) {
