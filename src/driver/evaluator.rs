@@ -45,6 +45,9 @@ pub(crate) struct Evaluator<'a> {
     pub judgements: Judgements,
     /// Why the latest design without values has none.
     pub without_values: Option<String>,
+    /// Whether the first gradient was judged, and why it is refused, if it is.
+    judged: bool,
+    refused: Option<String>,
 }
 
 impl<'a> Evaluator<'a> {
@@ -69,6 +72,8 @@ impl<'a> Evaluator<'a> {
             latest: None,
             judgements: Judgements::default(),
             without_values: None,
+            judged: false,
+            refused: None,
         })
     }
 
@@ -210,6 +215,10 @@ impl Nlp for Evaluator<'_> {
     }
 
     fn evaluate(&mut self, x: &[f64]) -> Result<Evaluation, EvaluationFailure> {
+        // Gradients that mean nothing at the start mean nothing beside it.
+        if let Some(reason) = &self.refused {
+            return Err(self.failure(reason.clone()));
+        }
         let x = unscaled(self.problem, x);
         let functions = self.functions();
         let problem = self.problem;
@@ -267,6 +276,7 @@ impl Nlp for Evaluator<'_> {
         let functions = self.functions();
         let (last, speculative) = (&mut self.last, &mut self.speculative);
         let integration = &mut self.integration;
+        let (judged, refused) = (&mut self.judged, &mut self.refused);
         let found = self.log.gradients(&x, |account| {
             if let Some((gradients, [run, own])) = speculative.take_gradients(integration, &x) {
                 if !account.repeated {
@@ -284,6 +294,12 @@ impl Nlp for Evaluator<'_> {
             for (&f, gradient) in functions.iter().zip(&gradients) {
                 if let Some(i) = gradient.iter().position(|d| !d.is_finite()) {
                     return Err(at.not_finite_derivative(problem, (f, i), gradient[i]));
+                }
+            }
+            if !std::mem::replace(judged, true) {
+                *refused = at.refused(problem, &functions, &gradients);
+                if let Some(reason) = &*refused {
+                    return Err(reason.clone());
                 }
             }
             Ok(gradients)

@@ -175,6 +175,30 @@ impl Grid {
         }
     }
 
+    /// The grid with every two steps in one, which has the cells of both; `None` if there is but one
+    /// step, or if redundant rows change.
+    pub(crate) fn doubled(&self) -> Option<Self> {
+        let steps = self.steps();
+        if steps < 2 || self.left_out.len() > 1 {
+            return None;
+        }
+        let last = self.ends[steps];
+        let mut ends: Vec<f64> = self.ends.iter().copied().step_by(2).collect();
+        if !steps.is_multiple_of(2) {
+            ends.push(last);
+        }
+        let pairs = self.cells.chunks(2).map(|pair| pair.iter().sum::<u32>());
+        Some(Self {
+            ends,
+            equal: self
+                .equal
+                .filter(|_| steps.is_multiple_of(2))
+                .map(|width| 2.0 * width),
+            cells: pairs.collect(),
+            left_out: self.left_out.clone(),
+        })
+    }
+
     /// The last end so far.
     pub(crate) fn reached(&self) -> f64 {
         self.ends[self.ends.len() - 1]

@@ -6,7 +6,7 @@ use super::quadrature::{Due, Step};
 use super::rows::real;
 use super::schedule::Schedule;
 use super::settings::{LinearSolver, Method, Spacing};
-use super::work::WorkCounts;
+use super::work::{Measured, WorkCounts};
 use super::{explicit, implicit};
 use crate::math::{Complex64, Scalar};
 use crate::system::Numbering;
@@ -53,6 +53,8 @@ pub(crate) struct Trajectory<S: Scalar> {
     pub tape: Tape<S>,
     /// Work spent.
     pub counts: WorkCounts,
+    /// What an explicit march with a tolerance measured of the stiffness of the scene.
+    pub stiffness: Option<Measured>,
 }
 
 /// Data for the adjoint, by family of methods.
@@ -92,6 +94,7 @@ impl<S: Scalar> Trajectory<S> {
             step_error: 0.0,
             tape,
             counts: WorkCounts::default(),
+            stiffness: None,
         }
     }
 
@@ -221,6 +224,7 @@ impl Trajectory<f64> {
             step_error: self.step_error,
             tape: Tape::Explicit(explicit::Tape::none(&numbering)),
             counts: self.counts,
+            stiffness: self.stiffness,
             numbering,
         }
     }
@@ -260,6 +264,7 @@ impl Trajectory<Complex64> {
                 Tape::Implicit(tape) => Tape::Implicit(tape.with(tape.block.real())),
             },
             counts: self.counts,
+            stiffness: self.stiffness,
         }
     }
 }
