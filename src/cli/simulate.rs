@@ -302,6 +302,11 @@ pub(crate) fn check(job: &Job, tolerance: f64) -> Result<u8, Failure> {
         (Err(_), Some(chaos)) => return Err(Failure::numerical(chaos)),
         (Err(failure), None) => return Err(Failure::numerical(failure)),
     };
+    let unresolved = match problem.statics {
+        Some(_) => Vec::new(),
+        // Where the finer run fails, the two derivatives still agree or not.
+        None => driver::resolved::of_design(&problem, &problem.start()).unwrap_or_default(),
+    };
     let names = |all: &mut dyn Iterator<Item = &String>| {
         all.map(|name| name.chars().count())
             .max()
@@ -373,8 +378,16 @@ pub(crate) fn check(job: &Job, tolerance: f64) -> Result<u8, Failure> {
     if let Some(chaos) = &chaos {
         let _ = writeln!(text, "warning: {chaos}");
     }
-    if !job.quiet || failed > 0 {
+    for own in &unresolved {
+        let _ = writeln!(text, "refused: {}", own.describe(&problem));
+    }
+    if !unresolved.is_empty() {
+        let advice = driver::resolved::advice(&problem);
+        let _ = writeln!(text, "the steps do not resolve these derivatives: {advice}");
+    }
+    let failed = failed > 0 || !unresolved.is_empty();
+    if !job.quiet || failed {
         print(&text)?;
     }
-    Ok(if failed > 0 { NOT_REACHED } else { DONE })
+    Ok(if failed { NOT_REACHED } else { DONE })
 }

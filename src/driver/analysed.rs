@@ -4,7 +4,7 @@ use super::evaluate::Evaluated;
 use super::integration::{Integration, Refresh};
 use super::simulate::{Simulation, simulate, simulate_with};
 use super::statics::{StaticDesign, StaticsFailure};
-use super::{error, not_finite, start, statics};
+use super::{error, not_finite, resolved, start, statics};
 use crate::functions::evaluate::ungated_maximum;
 use crate::functions::instant::Instant;
 use crate::functions::{Bound, Function, Reduction};
@@ -124,6 +124,23 @@ impl Analysed {
             Self::Statics(_) => {
                 format!("the function \"{}\" is {value}", problem.function_names[f])
             }
+        }
+    }
+
+    /// Why these gradients of the functions `which` are refused, if they are: the steps do not
+    /// resolve them. Where this cannot be judged they are not.
+    pub(super) fn refused(
+        &self,
+        problem: &Problem,
+        which: &[usize],
+        gradients: &[Vec<f64>],
+    ) -> Option<String> {
+        match self {
+            Self::Motion(at) => {
+                let found = resolved::of_gradients(problem, at, which, gradients).ok()?;
+                resolved::refusal(problem, &found)
+            }
+            Self::Statics(_) => None,
         }
     }
 

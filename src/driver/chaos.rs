@@ -104,6 +104,7 @@ fn confirm(
         spacing: problem.simulation.spacing.clone(),
         samples: Samples::Uniform(SAMPLES),
         limits: problem.simulation.limits.clone(),
+        derivatives: true,
         ..Settings::steps(at.run.method, 1)
     };
     let duration = at.run.duration;

@@ -292,6 +292,7 @@ fn halved(run: &Trajectory<f64>, (cells, summed): (bool, bool), limits: Limits) 
         samples,
         limits,
         memory: 0,
+        derivatives: false,
     }
 }
 

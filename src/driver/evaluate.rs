@@ -95,6 +95,7 @@ impl Evaluated {
             },
             limits: whole.simulation.limits.clone(),
             solver: whole.simulation.solver,
+            derivatives: !whole.variables.is_empty(),
             ..Settings::steps(self.run.method, 1)
         };
         let method = whole.simulation.method;
@@ -212,6 +213,7 @@ impl Evaluated {
             once.binary_search(f)
                 .expect("every function is in the list")
         };
+        let mut of_event: Option<Vec<Scene<f64>>> = None;
         let adjoint = match &self.scene.until {
             Some(_) if !once.is_empty() => {
                 let with_event: Vec<usize> =
@@ -219,9 +221,9 @@ impl Evaluated {
                 let mut found = adjoint::gradients(&self.scene, &self.run, &with_event)?;
                 if let Some(event) = found.gradients.pop() {
                     event::refuse_touch(&self.scene, &self.run, event.duration)?;
-                    for gradient in &mut found.gradients {
-                        *gradient = along_event(gradient, &event);
-                    }
+                    let along = |gradient: &Scene<f64>| along_event(gradient, &event);
+                    let (all, sizes): (Vec<_>, Vec<_>) = found.gradients.iter().map(along).unzip();
+                    (found.gradients, of_event) = (all, Some(sizes));
                 }
                 found
             }
@@ -229,14 +231,19 @@ impl Evaluated {
         };
         let by_parameters: Vec<Vec<f64>> =
             adjoint.gradients.iter().map(Scene::parameters).collect();
+        let sizes: Vec<Vec<f64>> = match &of_event {
+            Some(sizes) => sizes.iter().map(Scene::parameters).collect(),
+            None => by_parameters.clone(),
+        };
         let mut all = vec![Vec::with_capacity(self.x.len()); once.len()];
         for i in 0..self.x.len() {
             let moved = parameter_derivatives(problem, &self.x, i);
-            for (gradient, by) in all.iter_mut().zip(&by_parameters) {
+            let rows = by_parameters.iter().zip(&sizes);
+            for (gradient, (by, sizes)) in all.iter_mut().zip(rows) {
                 let mut sum = Derivative::default();
-                for (a, b) in by.iter().zip(&moved) {
+                for ((a, size), b) in by.iter().zip(sizes).zip(&moved) {
                     sum.value += a * b;
-                    sum.terms += (a * b).abs();
+                    sum.terms += (size * b).abs();
                 }
                 gradient.push(sum);
             }
@@ -247,19 +254,23 @@ impl Evaluated {
 }
 
 /// The derivative of a function where the event moves with the parameters: ∂f − (∂f/∂T) (∂g − ∂c) /
-/// (∂g/∂T).
-fn along_event(function: &Scene<f64>, event: &Scene<f64>) -> Scene<f64> {
+/// (∂g/∂T); and the sum of the sizes of both terms.
+fn along_event(function: &Scene<f64>, event: &Scene<f64>) -> (Scene<f64>, Scene<f64>) {
     let ratio = function.duration / event.duration;
     let mut event = event.clone();
     if let Some(until) = &mut event.until {
         until.value = -1.0;
     }
     let by_event = event.parameters();
-    let mut next = by_event.into_iter();
-    let mut out = function.map(&mut |f| f - ratio * next.next().expect("scenes of one shape"));
-    // The design no longer determines the duration.
-    out.duration = 0.0;
-    out
+    let with = |term: &dyn Fn(f64, f64) -> f64| {
+        let mut next = by_event.iter();
+        let mut of = |f: f64| term(f, ratio * next.next().expect("scenes of one shape"));
+        let mut out = function.map(&mut of);
+        // The design no longer determines the duration.
+        out.duration = 0.0;
+        out
+    };
+    (with(&|f, e| f - e), with(&|f, e| f.abs() + e.abs()))
 }
 
 /// A derivative in a variable: the sum over the parameters of the scene that it moves.

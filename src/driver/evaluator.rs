@@ -46,6 +46,9 @@ pub(crate) struct Evaluator<'a> {
     /// Why the latest design without values has none, and that without gradients.
     pub without_values: Option<String>,
     pub without_gradients: Option<String>,
+    /// Whether the first gradient was judged, and why it is refused, if it is.
+    judged: bool,
+    refused: Option<String>,
 }
 
 impl<'a> Evaluator<'a> {
@@ -71,6 +74,8 @@ impl<'a> Evaluator<'a> {
             judgements: Judgements::default(),
             without_values: None,
             without_gradients: None,
+            judged: false,
+            refused: None,
         })
     }
 
@@ -232,6 +237,10 @@ impl Nlp for Evaluator<'_> {
     }
 
     fn evaluate(&mut self, x: &[f64]) -> Result<Evaluation, EvaluationFailure> {
+        // Gradients that mean nothing at the start mean nothing beside it.
+        if let Some(reason) = &self.refused {
+            return Err(self.failure(reason.clone()));
+        }
         let x = unscaled(self.problem, x);
         let functions = self.functions();
         let problem = self.problem;
@@ -289,6 +298,7 @@ impl Nlp for Evaluator<'_> {
         let functions = self.functions();
         let (last, speculative) = (&mut self.last, &mut self.speculative);
         let integration = &mut self.integration;
+        let (judged, refused) = (&mut self.judged, &mut self.refused);
         let found = self.log.gradients(&x, |account| {
             if let Some((gradients, [run, own])) = speculative.take_gradients(integration, &x) {
                 if !account.repeated {
@@ -312,6 +322,12 @@ impl Nlp for Evaluator<'_> {
             for (&f, gradient) in functions.iter().zip(&gradients) {
                 if let Some(i) = gradient.iter().position(|d| !d.is_finite()) {
                     return Err(at.not_finite_derivative(problem, (f, i), gradient[i]));
+                }
+            }
+            if !std::mem::replace(judged, true) {
+                *refused = at.refused(problem, &functions, &gradients);
+                if let Some(reason) = &*refused {
+                    return Err(reason.clone());
                 }
             }
             Ok(gradients)

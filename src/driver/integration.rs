@@ -52,6 +52,8 @@ pub(crate) struct Integration {
     /// Number of designs that do not fulfil the conditions of the lowering.
     pub unlowered: usize,
     memory: usize,
+    /// Whether the functions have derivatives: the problem has variables.
+    derivatives: bool,
     /// When the event came in the last run, if the scene has one \[s\].
     pub event: Option<f64>,
     /// When it comes in the next run, if that is known to the last bit \[s\].
@@ -133,6 +135,7 @@ impl Integration {
                 (true, given) => memory::for_gradients(given),
                 (false, _) => 0,
             },
+            derivatives: !problem.variables.is_empty(),
             event: None,
             settled: None,
         }
@@ -155,6 +158,7 @@ impl Integration {
             refreshes: 0,
             unlowered: 0,
             memory: 0,
+            derivatives: false,
             event: None,
             settled: None,
         }
@@ -232,6 +236,7 @@ impl Integration {
             samples: self.samples,
             limits: self.limits.clone(),
             memory: self.memory,
+            derivatives: self.derivatives,
         }
     }
 

@@ -25,6 +25,7 @@ pub(crate) mod not_finite;
 pub(crate) mod optimise;
 pub(crate) mod parameter;
 mod record;
+pub(crate) mod resolved;
 pub(crate) mod second_order;
 pub(crate) mod shell_fields;
 mod shells;

@@ -9,6 +9,8 @@ use crate::integrate::{
 /// Limit of steps times bodies to explain a motion, and least number of steps.
 const WORK: usize = 20_000;
 const LEAST: usize = 4;
+/// Least number of steps with elastic bodies, if the method is chosen by measuring it.
+const LEAST_FLEXIBLE: usize = 250;
 /// The first part of a motion to try, and the largest growth of the next one.
 const FIRST: f64 = 1e-3;
 const LONGER: f64 = 10.0;
@@ -35,7 +37,9 @@ pub(super) fn of_long(
     scene: &Scene<f64>,
     integration: &Integration,
 ) -> Result<Option<Stretch>, IntegrationFailure> {
-    let most = (WORK / scene.model.bodies.len().max(1)).max(LEAST);
+    let measured = integration.method().is_none() && !scene.model.flexible.is_empty();
+    let least = if measured { LEAST_FLEXIBLE } else { LEAST };
+    let most = (WORK / scene.model.bodies.len().max(1)).max(least);
     let wanted = integration.wanted();
     let run = |part: f64, settings: &Settings| {
         simulate_by(

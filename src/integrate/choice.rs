@@ -1,8 +1,9 @@
 //! The choice of the integration method of a scene, and warnings about methods.
 
-use super::explicit::stiffness::Watch;
+use super::explicit::stiffness::{UNSTABLE, Watch};
 use super::settings::{Method, Settings, Spacing};
 use super::trajectory::Trajectory;
+use super::work::Measured;
 use super::{IntegrationFailure, simulate_watching};
 use crate::linalg::SolveScalar;
 use crate::math::{Scalar, Vec3};
@@ -49,7 +50,7 @@ pub(crate) fn simulate_by<S: SolveScalar>(
         Some(_) => Watch::Stability,
         None => Watch::Cost,
     };
-    let with = |method: Method, reason: String| {
+    let with = |method: Method, why: Option<String>| {
         let mut settings = Settings {
             method,
             ..settings.clone()
@@ -63,6 +64,7 @@ pub(crate) fn simulate_by<S: SolveScalar>(
             }
             Spacing::Steps(_) | Spacing::Frozen(_) => {}
         }
+        let reason = why.unwrap_or_else(|| measured(run.stiffness));
         Ok(Chosen {
             run,
             settings,
@@ -70,11 +72,11 @@ pub(crate) fn simulate_by<S: SolveScalar>(
         })
     };
     if let Some(method) = method {
-        return with(method, reason(true, method).into());
+        return with(method, Some(reason(true, method).into()));
     }
-    match with(NON_STIFF, reason(false, NON_STIFF).into()) {
+    match with(NON_STIFF, None) {
         Err(IntegrationFailure::Stiff { share: None, .. }) => {
-            with(STIFF, reason(false, STIFF).into())
+            with(STIFF, Some(reason(false, STIFF).into()))
         }
         Err(IntegrationFailure::Stiff {
             share: Some(share),
@@ -85,7 +87,14 @@ pub(crate) fn simulate_by<S: SolveScalar>(
             let reason = format!(
                 "the scene is stiff: from t = {time:.4} s on, {stiff} takes {share:.2} of the work of {other}"
             );
-            with(STIFF, reason)
+            with(STIFF, Some(reason))
+        }
+        Err(IntegrationFailure::EnergyGained { time, gained, .. }) => {
+            let reason = format!(
+                "the scene is stiff: at t = {time:.4} s {} had gained {gained:.1e} J that no load supplied",
+                NON_STIFF.name()
+            );
+            with(STIFF, Some(reason))
         }
         Err(
             IntegrationFailure::NotFinite { time, .. }
@@ -96,11 +105,11 @@ pub(crate) fn simulate_by<S: SolveScalar>(
             | IntegrationFailure::Singular { time, .. },
         ) if settings.spacing.is_equal() => {
             let reason = format!("explicit steps of this size fail at t = {time:.4} s");
-            with(STIFF, reason)
+            with(STIFF, Some(reason))
         }
         Err(failure @ IntegrationFailure::NoHeadway { time, .. }) => {
             let reason = format!("explicit steps make no headway at t = {time:.4} s");
-            with(STIFF, reason).map_err(|_| failure)
+            with(STIFF, Some(reason)).map_err(|_| failure)
         }
         found => found,
     }
@@ -110,8 +119,26 @@ pub(crate) fn simulate_by<S: SolveScalar>(
 pub(crate) fn reason(given: bool, method: Method) -> &'static str {
     match method {
         _ if given => "as the problem says",
-        Method::Dop853 => "the scene is rigid and not stiff",
+        Method::Dop853 => "the scene is not stiff",
         _ => "the scene is stiff: stability, not accuracy, bounds explicit steps",
+    }
+}
+
+/// The reason for the explicit method by what it measured.
+fn measured(found: Option<Measured>) -> String {
+    let general = reason(false, NON_STIFF);
+    match found {
+        Some(Measured {
+            compared: Some((time, work)),
+            ..
+        }) => format!(
+            "{general}: from t = {time:.4} s on, {} would take {work:.2} times its work",
+            STIFF.name()
+        ),
+        Some(Measured { largest, .. }) if largest > 0.0 => format!(
+            "{general}: h |lambda| of the steps is at most {largest:.1e}, and stable up to {UNSTABLE}"
+        ),
+        Some(_) | None => general.into(),
     }
 }
 

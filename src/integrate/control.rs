@@ -68,6 +68,8 @@ pub(crate) struct Controller {
     /// Kinks that adaptive steps must not pass, and the largest width.
     stops: Vec<f64>,
     widest: f64,
+    /// The largest width that resolves the tangent.
+    resolved: f64,
     /// Width before a stop shortened the step.
     uncut: Option<f64>,
     /// Smallest width, and its part that does not depend on time.
@@ -140,6 +142,7 @@ impl Controller {
             rejected: false,
             stops,
             widest,
+            resolved: f64::INFINITY,
             uncut: None,
             least,
             shortest: least,
@@ -220,7 +223,7 @@ impl Controller {
                     self.stopped = Some(stop);
                     return None;
                 }
-                *width = width.min(self.widest);
+                *width = width.min(self.widest).min(self.resolved);
                 let ahead = self.ahead.map(|at| at - reached);
                 let more = match self.rejected && self.leaps == 0 {
                     true => 1.0,
@@ -375,6 +378,11 @@ impl Controller {
     pub(crate) fn expect(&mut self, magnified: f64, ahead: Option<f64>) {
         self.magnified = magnified;
         self.ahead = ahead.or(self.ahead);
+    }
+
+    /// Bounds the next steps by this width, which resolves the tangent.
+    pub(crate) fn resolve(&mut self, width: f64) {
+        self.resolved = width.max(10.0 * self.least);
     }
 
     /// Allowed error of steps: the tolerance, or the largest error of given steps so far.

@@ -9,13 +9,20 @@
 //!
 //! where X is the energy exchanged between bodies, gravity and springs. A run of N steps is wrong if
 //! its energy changes by far more than N times that, and by a thousandth of X + K.
+//!
+//! Stiff springs and elastic bodies make S large: a displacement within the tolerance is then a
+//! large energy. So after every explicit step, in scenes with loads too, the energy gained is
+//! compared with what there was: it may not exceed half of the energy at the start, of that
+//! released by gravity and of K, and twice what loads and drives have supplied. Energy above that
+//! is no motion, whatever the tolerance: explicit steps at the border of stability feed fast
+//! vibrations.
 
 use super::failure::IntegrationFailure;
 use super::scale::Scale;
 use super::settings::{Settings, Spacing};
 use crate::math::Scalar;
-use crate::model::Model;
 use crate::model::load::LoadKind;
+use crate::model::{Model, RigidBody};
 use crate::system::{BodyMotion, flexible, loads};
 
 /// Smallest change of energy that can reject a run, relative to X + K.
@@ -24,6 +31,161 @@ const PART: f64 = 1e-3;
 const MARGIN: f64 = 100.0;
 /// Round-off relative to the energies.
 const ROUND_OFF: f64 = 1e-10;
+
+/// Part of the available energy that a run may gain by its errors, and factor on the supplied one,
+/// whose power is known at the ends of steps only.
+const GAINED: f64 = 0.5;
+const SUPPLIED: f64 = 2.0;
+
+/// Energy of a motion and its sources, after every step of an explicit march.
+#[derive(Clone, Debug)]
+pub(crate) struct Supply {
+    /// K of rigid bodies \[J\].
+    at_speed: f64,
+    start: Stock,
+    /// Largest energy that gravity and springs with a negative stiffness released \[J\].
+    released: f64,
+    /// Energy that loads and drives supplied or took, and their last power and its time.
+    supplied: f64,
+    power: f64,
+    time: f64,
+}
+
+/// Energies at an instant \[J\]: kinetic, of springs, of elastic bodies, and of the weight of each
+/// rigid body and of all elastic ones.
+#[derive(Clone, Debug, Default)]
+struct Stock {
+    kinetic: f64,
+    springs: f64,
+    elastic: f64,
+    weights: Vec<f64>,
+}
+
+impl Stock {
+    fn of<S: Scalar>(model: &Model<S>, motions: &[BodyMotion<S>]) -> Self {
+        let mut own = Self {
+            springs: loads::potential(model, motions).re(),
+            ..Self::default()
+        };
+        for (body, motion) in model.bodies.iter().zip(motions) {
+            own.kinetic += kinetic(body, motion);
+            own.weights.push(weight(model, body, motion));
+        }
+        if !model.flexible.is_empty() {
+            let held = flexible::held(model, motions);
+            own.kinetic += held.kinetic.re();
+            own.elastic = elastic(model, motions);
+            own.weights.push(held.potential.re() - own.elastic);
+        }
+        own
+    }
+}
+
+fn kinetic<S: Scalar>(body: &RigidBody<S>, motion: &BodyMotion<S>) -> f64 {
+    let (v, omega) = (&motion.velocity, &motion.omega);
+    0.5 * (body.mass * v.dot(v) + omega.dot(&(body.inertia * omega))).re()
+}
+
+/// The energy of the weight of a body.
+fn weight<S: Scalar>(model: &Model<S>, body: &RigidBody<S>, motion: &BodyMotion<S>) -> f64 {
+    -(body.mass * model.gravity.dot(&motion.position)).re()
+}
+
+fn elastic<S: Scalar>(model: &Model<S>, motions: &[BodyMotion<S>]) -> f64 {
+    let bodies = model.flexible.iter();
+    bodies
+        .map(|body| flexible::strain_energy(body, motions).re())
+        .sum()
+}
+
+/// Σ (½ m U² + ½ tr J Ω²) over the rigid bodies.
+fn at_speed<S: Scalar>(model: &Model<S>, scale: &Scale) -> f64 {
+    let [speed, spin] = scale.floor;
+    let bodies = model.bodies.iter().map(|body| {
+        let turning = body.inertia.trace().re() * spin * spin;
+        0.5 * (body.mass.re() * speed * speed + turning)
+    });
+    bodies.sum()
+}
+
+impl Supply {
+    /// For a run of `model` that starts in `motions`, where loads and drives have the power `power`
+    /// \[W\]. `None` if the steps are equal: their accuracy is the user's choice.
+    pub(crate) fn open<S: Scalar>(
+        model: &Model<S>,
+        settings: &Settings,
+        scale: &Scale,
+        (motions, power): (&[BodyMotion<S>], f64),
+    ) -> Option<Self> {
+        // A complex run has the real part of a run that was checked.
+        if S::INFINITESIMAL || matches!(settings.spacing, Spacing::Steps(_)) {
+            return None;
+        }
+        Some(Self {
+            at_speed: at_speed(model, scale),
+            start: Stock::of(model, motions),
+            released: 0.0,
+            supplied: 0.0,
+            power,
+            time: 0.0,
+        })
+    }
+
+    /// Compares the energy at `time` with what there was; `power` is that of loads and drives.
+    ///
+    /// # Errors
+    /// [`IntegrationFailure::EnergyGained`].
+    pub(crate) fn look<S: Scalar>(
+        &mut self,
+        model: &Model<S>,
+        (motions, power): (&[BodyMotion<S>], f64),
+        (time, step): (f64, usize),
+    ) -> Result<(), IntegrationFailure> {
+        self.supplied += (time - self.time) * power.max(self.power);
+        (self.power, self.time) = (power, time);
+        let start = &self.start;
+        let (mut now, mut weighs) = (0.0, 0.0);
+        let mut size = 0.0;
+        let mut fell = 0.0;
+        let bodies = model.bodies.iter().zip(motions).zip(&start.weights);
+        for ((body, motion), then) in bodies {
+            now += kinetic(body, motion);
+            let weight = weight(model, body, motion);
+            weighs += weight - then;
+            fell += (weight - then).abs();
+            size += weight.abs();
+        }
+        let springs = loads::potential(model, motions).re();
+        let mut strained = 0.0;
+        if !model.flexible.is_empty() {
+            let held = flexible::held(model, motions);
+            strained = elastic(model, motions);
+            now += held.kinetic.re();
+            let weight = held.potential.re() - strained;
+            let then = start.weights.last().copied().unwrap_or(0.0);
+            weighs += weight - then;
+            fell += (weight - then).abs();
+            size += weight.abs();
+        }
+        size += now + springs.abs() + strained;
+        self.released = self.released.max(fell + (start.springs - springs).max(0.0));
+        let before = start.kinetic + start.elastic + start.springs.abs();
+        let gained =
+            now + springs + strained + weighs - (start.kinetic + start.springs + start.elastic);
+        let available = before + self.released + self.at_speed;
+        let most = GAINED * available + SUPPLIED * self.supplied + ROUND_OFF * size;
+        // NaN counts as a gain.
+        match gained <= most {
+            true => Ok(()),
+            false => Err(IntegrationFailure::EnergyGained {
+                time,
+                step,
+                gained,
+                available: available + self.supplied,
+            }),
+        }
+    }
+}
 
 /// Energies of a run at the ends of steps 1, 2, 4, 8 … and of the last step.
 #[derive(Clone, Debug)]
@@ -74,11 +236,6 @@ impl Ledger {
         if S::INFINITESIMAL || !settings.method.is_adaptive() || !model.conserves_energy() {
             return None;
         }
-        let [speed, spin] = scale.floor;
-        let bodies = model.bodies.iter().map(|body| {
-            let turning = body.inertia.trace().re() * spin * spin;
-            0.5 * (body.mass.re() * speed * speed + turning)
-        });
         let springs = model.loads.iter().map(|load| match &load.kind {
             LoadKind::Spring {
                 stiffness, cubic, ..
@@ -103,7 +260,7 @@ impl Ledger {
         });
         Some(Self {
             tolerance,
-            at_speed: bodies.sum(),
+            at_speed: at_speed(model, scale),
             stiff: springs.sum::<f64>() + elastic.sum::<f64>(),
             looks: Vec::new(),
         })
@@ -121,22 +278,20 @@ impl Ledger {
         motions: &[BodyMotion<S>],
         time: f64,
     ) {
-        let (mut kinetic, mut potential) = (0.0, Vec::with_capacity(motions.len() + 1));
+        let (mut energy, mut potential) = (0.0, Vec::with_capacity(motions.len() + 1));
         for (body, motion) in model.bodies.iter().zip(motions) {
-            let (mass, v, omega) = (body.mass, &motion.velocity, &motion.omega);
-            let twice = mass * v.dot(v) + omega.dot(&(body.inertia * omega));
-            kinetic += 0.5 * twice.re();
-            potential.push(-(mass * model.gravity.dot(&motion.position)).re());
+            energy += kinetic(body, motion);
+            potential.push(weight(model, body, motion));
         }
         potential.push(loads::potential(model, motions).re());
         if !model.flexible.is_empty() {
             let held = flexible::held(model, motions);
-            kinetic += held.kinetic.re();
+            energy += held.kinetic.re();
             potential.push(held.potential.re());
         }
         self.looks.push(Look {
             time,
-            kinetic,
+            kinetic: energy,
             potential,
         });
     }

@@ -224,6 +224,22 @@ pub(crate) enum IntegrationFailure {
         /// Largest kinetic energy or change of potential energy \[J\].
         exchanged: f64,
     },
+    /// The motion gains energy that nothing supplies.
+    #[error(
+        "at t = {time:.6e} s (step {step}) the motion has gained {gained:.3e} J that no load supplied \
+         ({available:.3e} J were available): the explicit steps are unstable for a fast vibration; take a \
+         radau method, or a smaller tolerance"
+    )]
+    EnergyGained {
+        /// Time of the step's end \[s\].
+        time: f64,
+        /// Step number, from 1.
+        step: usize,
+        /// Energy above that of the start \[J\].
+        gained: f64,
+        /// Energy at the start, of gravity, and supplied by loads and drives \[J\].
+        available: f64,
+    },
     /// Mass and inertia of a body are not those of a solid.
     #[error(
         "body \"{body}\" has no mass and inertia of a solid: mass and principal moments are \

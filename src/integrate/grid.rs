@@ -379,18 +379,30 @@ impl Grid {
 
     /// Steps of twice the size, each with the cells of both, if all have one size and their number is even.
     pub(crate) fn paired(&self) -> Option<Self> {
-        let width = self.equal?;
-        if !self.steps().is_multiple_of(2) {
+        let even = self.is_equal() && self.steps().is_multiple_of(2);
+        even.then(|| self.doubled()).flatten()
+    }
+
+    /// The grid with every two steps in one, which has the cells of both; `None` if there is but one
+    /// step, if steps end at kinks, or if redundant rows change.
+    pub(crate) fn doubled(&self) -> Option<Self> {
+        let steps = self.steps();
+        if steps < 2 || !self.kinks.is_empty() || self.left_out.len() > 1 {
             return None;
         }
-        let cells = self.cells.chunks_exact(2).map(|pair| pair.iter().sum());
+        let mut ends: Vec<f64> = self.ends.iter().copied().step_by(2).collect();
+        let even = steps.is_multiple_of(2);
+        if !even {
+            ends.push(self.ends[steps]);
+        }
+        let pairs = self.cells.chunks(2).map(|pair| pair.iter().sum::<u32>());
+        let halves = self.equal.iter().filter(|_| even).map(|count| count / 2);
         Some(Self {
-            ends: self.ends.iter().copied().step_by(2).collect(),
-            equal: Some(2.0 * width),
-            cells: cells.collect(),
-            left_out: (self.left_out.iter())
-                .map(|(step, rows)| (step.div_ceil(2), rows.clone()))
-                .collect(),
+            ends,
+            equal: halves.collect(),
+            halvings: 0,
+            cells: pairs.collect(),
+            ..self.clone()
         })
     }
 

@@ -168,6 +168,8 @@ pub(crate) struct Settings {
     /// Memory for the data of a gradient \[bytes\]; a gradient repeats the other steps. Zero if no
     /// gradient is expected: one that follows repeats the motion in [`MEMORY`].
     pub memory: usize,
+    /// Whether derivatives are wanted: adaptive explicit steps then resolve the tangent.
+    pub derivatives: bool,
 }
 
 impl Samples {
@@ -194,6 +196,7 @@ impl Settings {
             samples: Samples::StepEnds,
             limits: Limits::default(),
             memory: MEMORY,
+            derivatives: false,
         }
     }
 }

@@ -117,7 +117,7 @@ impl<S: SolveScalar> Steadiness<S> {
 /// relations: the finaliser of SplitMix64 (Steele, Lea & Flood 2014). Multiples of an irrational
 /// number have relations: u₁ − u₃ − u₅ + u₇ = 0 is the dependent combination of rows where the bars
 /// of a parallelogram are in line.
-fn irregular(n: usize) -> f64 {
+pub(crate) fn irregular(n: usize) -> f64 {
     let mut x = (n as u64 + 1).wrapping_mul(0x9e37_79b9_7f4a_7c15);
     x = (x ^ (x >> 30)).wrapping_mul(0xbf58_476d_1ce4_e5b9);
     x = (x ^ (x >> 27)).wrapping_mul(0x94d0_49bb_1331_11eb);

@@ -6,7 +6,7 @@ use super::quadrature::{Due, Step, weights};
 use super::rows::real;
 use super::schedule::Schedule;
 use super::settings::{LinearSolver, Method};
-use super::work::WorkCounts;
+use super::work::{Measured, WorkCounts};
 use super::{explicit, implicit};
 use crate::math::{Complex64, Scalar};
 use crate::system::Numbering;
@@ -57,6 +57,8 @@ pub(crate) struct Trajectory<S: Scalar> {
     pub counts: WorkCounts,
     /// Limits of the simulation, which gradients heed too.
     pub limits: Limits,
+    /// What an explicit march with a tolerance measured of the stiffness of the scene.
+    pub stiffness: Option<Measured>,
 }
 
 /// Data for the adjoint, by family of methods.
@@ -98,6 +100,7 @@ impl<S: Scalar> Trajectory<S> {
             tape,
             counts: WorkCounts::default(),
             limits: Limits::default(),
+            stiffness: None,
         }
     }
 
@@ -250,6 +253,7 @@ impl Trajectory<f64> {
             tape: Tape::Explicit(explicit::Tape::none(&numbering)),
             counts: self.counts,
             limits: self.limits.clone(),
+            stiffness: self.stiffness,
             numbering,
         }
     }
@@ -291,6 +295,7 @@ impl Trajectory<Complex64> {
             },
             counts: self.counts,
             limits: self.limits.clone(),
+            stiffness: self.stiffness,
         }
     }
 }

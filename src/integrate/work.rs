@@ -21,6 +21,16 @@ pub struct WorkCounts {
     pub products: usize,
 }
 
+/// What was measured of the stiffness of a scene.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub(crate) struct Measured {
+    /// Largest h |λ| of a step, where the motion shows |λ|.
+    pub largest: f64,
+    /// The last comparison: time \[s\], and the work of the implicit method relative to that of
+    /// the explicit one.
+    pub compared: Option<(f64, f64)>,
+}
+
 impl WorkCounts {
     /// Work of a march by Radau IIA with three stages, in evaluations of the accelerations: about
     /// four per factorisation and two and a half per Newton iteration. These factors were measured

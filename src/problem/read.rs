@@ -36,7 +36,10 @@ use std::sync::Arc;
 
 /// Default error per step, if the file gives neither steps nor a tolerance.
 const TOLERANCE: f64 = 1e-9;
-/// That with finite elements, whose fast vibrations would set the steps. Positions are then accurate to about 1e-9.
+/// That with other elastic bodies: their functions are then accurate to about 1e-3 … 1e-8 of themselves, for a fifth to a
+/// thirtieth of the steps (docs/flexible.md).
+const TOLERANCE_OF_FLEXIBLE: f64 = 1e-6;
+/// That with finite elements of all nodes, whose fast vibrations would set the steps. Positions are then accurate to about 1e-9.
 const TOLERANCE_OF_ELEMENTS: f64 = 1e-5;
 
 /// Name of the objective if the nearest feasible design is sought.
@@ -326,10 +329,7 @@ fn problem(
     });
     Problem {
         name: written.name.clone(),
-        simulation: simulation(
-            written.simulation.as_ref(),
-            elements::has_all_nodes(&written),
-        ),
+        simulation: simulation(written.simulation.as_ref(), usual_tolerance(&written)),
         variables,
         objective: objective.or(nearest),
         nearest_to,
@@ -363,12 +363,19 @@ fn problem(
     }
 }
 
-/// The settings of the integration; `elements` says whether there are finite elements of all nodes.
-fn simulation(written: Option<&schema::Simulation>, elements: bool) -> Simulation {
-    let usual = match elements {
-        true => TOLERANCE_OF_ELEMENTS,
-        false => TOLERANCE,
-    };
+/// The tolerance of a file that gives none.
+fn usual_tolerance(written: &Document) -> f64 {
+    if elements::has_all_nodes(written) {
+        TOLERANCE_OF_ELEMENTS
+    } else if written.bodies.values().any(|body| body.is_flexible()) {
+        TOLERANCE_OF_FLEXIBLE
+    } else {
+        TOLERANCE
+    }
+}
+
+/// The settings of the integration; `usual` is the tolerance if the file gives neither it nor steps.
+fn simulation(written: Option<&schema::Simulation>, usual: f64) -> Simulation {
     let method = written.and_then(|written| written.method.as_ref());
     let method = method.map(|method| match *method {
         schema::Method::Dop853 => integrate::Method::Dop853,

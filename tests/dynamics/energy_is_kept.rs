@@ -3,7 +3,7 @@
 
 use crate::tests::reference::models::{KINDS, Numbers, joint};
 
-use flexbody::integrate::energy::Ledger;
+use flexbody::integrate::energy::{Ledger, Supply};
 use flexbody::integrate::scale::Scale;
 use flexbody::integrate::{
     Grid, IntegrationFailure, Method, Settings, Spacing, Trajectory, simulate,
@@ -13,6 +13,7 @@ use flexbody::model::{
     Axes, DegreeOfFreedom, Drive, JointKind, Load, LoadKind, Model, TimeFunction,
 };
 use flexbody::system::BodyMotion;
+use flexbody::system::accelerations::Accelerations;
 
 /// A tree of one to four bodies on random joints, with and without gravity, with springs of
 /// stiffness 1 to 1e5 between points and about hinges, in lengths of `unit` \[m\].
@@ -232,6 +233,97 @@ fn a_spoilt_run_is_refused() {
         small += usize::from(moves && judge(3, 1.05).is_err());
     }
     assert!(runs >= 25 && 10 * small >= 9 * runs, "{small} of {runs}");
+}
+
+/// The scene `seed` under gravity with a force, a torque or a drive, or all of them.
+fn loaded(seed: u64, unit: f64) -> (Model<f64>, f64) {
+    let (mut model, duration) = scene(seed, unit);
+    model.gravity = Vec3::new(0.0, 0.0, -9.81) * unit;
+    let body = model.bodies.len() - 1;
+    let own = &model.bodies[body];
+    let (weight, inertia) = (own.mass * 9.81 * unit, own.inertia.trace());
+    let kinds = [
+        LoadKind::Force {
+            body,
+            point: Vec3::new(0.1, 0.2, 0.3) * unit,
+            direction: Vec3::new(0.6, 0.0, 0.8),
+            axes: Axes::Ground,
+            magnitude: TimeFunction::Polynomial(vec![0.0, 9.0 * weight]),
+        },
+        LoadKind::Torque {
+            body,
+            direction: Vec3::x(),
+            axes: Axes::Body,
+            magnitude: TimeFunction::constant(20.0 * inertia),
+        },
+    ];
+    let name = |k: usize| format!("load {k}");
+    for (k, kind) in kinds.into_iter().enumerate() {
+        if seed % 4 == k as u64 || seed % 4 == 3 {
+            let name = name(k);
+            model.loads.push(Load { name, kind });
+        }
+    }
+    let turns = |joint: &&mut flexbody::model::Joint<f64>| joint.kind == JointKind::Revolute;
+    if seed % 4 >= 2
+        && let Some(joint) = model.joints.iter_mut().find(turns)
+    {
+        joint.drives.push(Drive {
+            dof: DegreeOfFreedom::Rotation,
+            course: TimeFunction::Polynomial(vec![0.0, 0.0, 3.0]),
+        });
+    }
+    (model, duration)
+}
+
+/// Explicit runs with loads and drives are not refused for the energy that these supply. With
+/// velocities ten times as large from some step on they are refused at its end.
+#[test]
+fn energy_that_no_load_supplied_is_refused_at_once() {
+    let (mut runs, mut refused) = (0, 0);
+    for seed in 0..32 {
+        let unit = [1.0, 1e-3, 1e2][seed as usize % 3];
+        let (model, duration) = loaded(seed, unit);
+        let by = settings(Method::Dop853, Spacing::Tolerance(1e-8));
+        let run = match simulate(&model, duration, &by) {
+            Ok(run) => run,
+            Err(failure @ IntegrationFailure::EnergyGained { .. }) => {
+                panic!("scene {seed}: {failure}")
+            }
+            Err(_) => continue,
+        };
+        runs += 1;
+        let scale = Scale::of(&model, &run.numbering, &run.initial, run.duration);
+        let mut field = Accelerations::new(&model, &run.numbering);
+        let (mut a, mut lambda) = (run.a(0).to_vec(), run.initial.lambda.clone());
+        let mut power = |k: usize| {
+            field.set_state(run.q(k), run.v(k), run.time(k));
+            field.factorise().expect("is regular");
+            field.accelerations(&mut a, &mut lambda);
+            field.supplied_power(run.v(k), &lambda)
+        };
+        let mut motions = Vec::new();
+        BodyMotion::all(&run.numbering, run.q(0), run.v(0), &mut motions);
+        let supply = Supply::open(&model, &by, &scale, (&motions[..], power(0)));
+        let mut supply = supply.expect("steps follow a tolerance");
+        for k in 1..=run.last() {
+            let factor = if k < 3 { 1.0 } else { 10.0 };
+            let v: Vec<f64> = run.v(k).iter().map(|v| factor * v).collect();
+            BodyMotion::all(&run.numbering, run.q(k), &v, &mut motions);
+            let at = (&motions[..], power(k));
+            if let Err(failure) = supply.look(&model, at, (run.time(k), k)) {
+                let text = failure.to_string();
+                let IntegrationFailure::EnergyGained { time, step, .. } = failure else {
+                    panic!("scene {seed}: {text}");
+                };
+                assert!(step >= 3 && time == run.time(step), "scene {seed}: {text}");
+                assert!(text.contains("no load supplied"), "{text}");
+                refused += usize::from(step == 3);
+                break;
+            }
+        }
+    }
+    assert!(runs >= 24 && 3 * refused >= 2 * runs, "{refused} of {runs}");
 }
 
 /// There is no check if energy is not conserved, if the user chose equal steps, or in complex runs.

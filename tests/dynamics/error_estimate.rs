@@ -71,6 +71,7 @@ fn exact(problem: &Problem) -> Vec<Vec<Exact>> {
         samples: Samples::Uniform(samples),
         limits: Default::default(),
         memory: MEMORY,
+        derivatives: false,
     };
     let chosen = simulate(model, duration, &settings(Spacing::Tolerance(1e-13), 1)).expect("runs");
     let once = chosen.grid.halved();

@@ -238,6 +238,7 @@ fn steps_follow_the_tolerance_at_the_work_that_was_counted() {
             samples: Samples::Uniform(1),
             limits: Default::default(),
             memory: 0,
+            derivatives: false,
         };
         let run = simulate(&model, duration, &settings).expect("runs");
         let found = motion_error(&run, &instants).0;
@@ -270,6 +271,7 @@ fn energy_of_a_chaotic_motion() {
         samples: Samples::StepEnds,
         limits: Default::default(),
         memory: 0,
+        derivatives: false,
     };
     let run = simulate(&model, 10.0, &settings).expect("runs");
     let drift = energy_drift(&model, &run);

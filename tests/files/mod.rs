@@ -1,5 +1,6 @@
 //! Contents of files: problems, records, figures, documents, and the layers of the source.
 
+mod at_rest;
 mod beam_scenes;
 mod beams;
 mod benchmarks;

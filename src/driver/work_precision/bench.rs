@@ -39,6 +39,11 @@ impl<'a> Bench<'a> {
         self.problem.simulation.limits.clone()
     }
 
+    /// Whether gradients are wanted.
+    pub(crate) fn has_gradient(&self) -> bool {
+        self.function.is_some()
+    }
+
     /// Whether the function is a sum over the motion, so that its gradient needs samples.
     pub(crate) fn sums(&self) -> bool {
         self.function
@@ -77,6 +82,7 @@ impl<'a> Bench<'a> {
             samples,
             limits: self.limits(),
             memory,
+            derivatives: reference.gradient.is_some(),
         };
         let (model, duration) = (&self.scene.model, self.scene.duration);
         let with_gradient = reference.gradient.is_some();

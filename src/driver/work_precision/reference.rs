@@ -106,6 +106,7 @@ fn candidate(
         },
         limits: bench.limits(),
         memory: 0,
+        derivatives: bench.has_gradient(),
     };
     let (model, duration) = (&bench.scene.model, bench.scene.duration);
     let chosen = simulate(model, duration, &settings)?;

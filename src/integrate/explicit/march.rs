@@ -4,9 +4,10 @@ use super::record::{Node, NodeView};
 use super::step::{StepFailure, Stepper};
 use super::stiffness::{Stiffness, Watch};
 use super::tableau::{ORDER, STAGES};
+use super::tangent::Tangent;
 use super::tape::{Block, Tape};
 use crate::integrate::control::Controller;
-use crate::integrate::energy::Ledger;
+use crate::integrate::energy::{Ledger, Supply};
 use crate::integrate::failure::IntegrationFailure;
 use crate::integrate::grid::{Grid, SamplePlace, place};
 use crate::integrate::quadrature;
@@ -71,10 +72,16 @@ pub(crate) fn march<S: SolveScalar>(
         Spacing::Steps(_) | Spacing::Frozen(_) => None,
     });
     // Frozen steps were not stiff when they were chosen. Their error is checked instead.
+    let flexible = !model.flexible.is_empty();
     let mut stiffness = match settings.spacing {
-        Spacing::Steps(_) | Spacing::Frozen(_) if equal => Some(Stiffness::new(Watch::Stability)),
+        Spacing::Steps(_) | Spacing::Frozen(_) if equal => {
+            Some(Stiffness::new(Watch::Stability, flexible, false))
+        }
         Spacing::Steps(_) | Spacing::Frozen(_) => None,
-        Spacing::Tolerance(_) => Some(Stiffness::new(watch_for)),
+        Spacing::Tolerance(_) => {
+            let tangent = settings.derivatives;
+            Some(Stiffness::new(watch_for, flexible, tangent))
+        }
     };
     let (mut from, mut to) = (node.clone(), node);
     let mut next = 1;
@@ -96,12 +103,34 @@ pub(crate) fn march<S: SolveScalar>(
         // Replayed steps begin without this factorisation.
         stepper.field.restore(&before);
     }
+    let mut tangent = match settings.spacing {
+        Spacing::Tolerance(tolerance) if settings.derivatives => Some(Tangent::new(
+            (model, numbering),
+            &scale,
+            from.view(),
+            stepper.field.left_out(),
+            tolerance,
+        )),
+        Spacing::Tolerance(_) | Spacing::Steps(_) | Spacing::Frozen(_) => None,
+    };
+    if let Some(tangent) = &tangent {
+        controller.resolve(tangent.largest_step() / duration.re());
+    }
     let mut ledger = Ledger::open(model, settings, &scale);
     let mut motions = Vec::new();
     if let Some(ledger) = &mut ledger {
         BodyMotion::all(numbering, &from.q, &from.v, &mut motions);
         ledger.enter(model, &motions, 0.0);
     }
+    let mut supply = match (S::INFINITESIMAL, equal) {
+        (false, false) => {
+            stepper.field.set_state(&from.q, &from.v, duration * 0.0);
+            let power = stepper.field.supplied_power(&from.v, &from.lambda);
+            let at = (&stepper.field.motions[..], power);
+            Supply::open(model, settings, &scale, at)
+        }
+        _ => None,
+    };
     while let Some(width) = controller.next(run.grid.reached()) {
         let begin = run.grid.reached();
         let h = run.grid.size(duration, width, begin);
@@ -192,6 +221,11 @@ pub(crate) fn march<S: SolveScalar>(
         if let Some(ledger) = ledger.as_mut().filter(|_| Ledger::is_due(number)) {
             ledger.enter(model, &stepper.field.motions, duration.re() * end);
         }
+        if let Some(supply) = &mut supply {
+            let power = stepper.field.supplied_power(&to.v, &to.lambda);
+            let at = (&stepper.field.motions[..], power);
+            supply.look(model, at, (duration.re() * end, number))?;
+        }
         run.grid.push(end);
         if let Some(stiffness) = &mut stiffness
             && stiffness.seen(&mut stepper, &scale, to.view(), (h.re(), &run))
@@ -226,7 +260,24 @@ pub(crate) fn march<S: SolveScalar>(
             stepper.field.leave_out(rows);
         }
         run.grid.leave_out(stepper.field.left_out());
+        if let Some(tangent) = &mut tangent {
+            let magnified = match steady.is_finite() {
+                true => steadiness.magnified(steady),
+                false => 1.0,
+            };
+            let at = (from.view(), duration * end);
+            let left_out = stepper.field.left_out();
+            tangent.renew(at, &scale, left_out, (number, magnified));
+            controller.resolve(tangent.largest_step() / duration.re());
+        }
     }
+    if let Some(tangent) = &tangent {
+        let [factorisations, solves] = tangent.work();
+        run.counts.evaluations += tangent.evaluations;
+        run.counts.factorisations += factorisations;
+        run.counts.solves += solves;
+    }
+    run.stiffness = stiffness.map(|own| own.measured);
     close(&mut run, &controller)?;
     if let Some(ledger) = &mut ledger {
         BodyMotion::all(numbering, &from.q, &from.v, &mut motions);

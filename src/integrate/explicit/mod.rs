@@ -14,6 +14,7 @@ pub(crate) mod replayer;
 pub(crate) mod step;
 pub(crate) mod stiffness;
 pub(crate) mod tableau;
+pub(crate) mod tangent;
 pub(crate) mod tape;
 
 pub(crate) use record::{NodeView, StepView, add_rows};

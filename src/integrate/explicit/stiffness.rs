@@ -16,6 +16,7 @@ use crate::integrate::quadrature::Samples;
 use crate::integrate::scale::Scale;
 use crate::integrate::settings::{Method, Settings};
 use crate::integrate::trajectory::Trajectory;
+use crate::integrate::work::Measured;
 use crate::linalg::SolveScalar;
 use crate::model::Model;
 use crate::system::Numbering;
@@ -32,7 +33,7 @@ pub(crate) enum Watch {
 
 /// Limits of h |λ|: border of the stability region (Hairer & Wanner 1996, section IV.2); possibly
 /// near it; below the last an implicit method has no advantage.
-const UNSTABLE: f64 = 6.1;
+pub(crate) const UNSTABLE: f64 = 6.1;
 const SUSPICIOUS: f64 = 2.0;
 const POSSIBLE: f64 = 0.3;
 /// Number of steps beyond a limit that make a scene stiff or suspicious.
@@ -43,9 +44,10 @@ const NOT_STIFF: usize = 6;
 const NOISE: f64 = 1e-13;
 
 /// Number of steps before the first comparison of the methods, if the scene is suspicious or if
-/// stiffness is possible; and the factor between the numbers of steps before consecutive
+/// stiffness is possible, which it always is with elastic bodies; and the factor between the numbers of steps before consecutive
 /// comparisons.
 const FIRST: [usize; 2] = [40, 500];
+const FIRST_FLEXIBLE: [usize; 2] = [40, 100];
 const AGAIN: usize = 4;
 /// Least number of steps over which the pace is measured.
 const RECENT: usize = 32;
@@ -84,6 +86,12 @@ impl Streak {
 /// Monitors whether stability, not accuracy, bounds the steps.
 pub(crate) struct Stiffness {
     watch: Watch,
+    /// What was measured so far.
+    pub measured: Measured,
+    /// Whether the scene has elastic bodies, whose fast modes need not show in the motion.
+    flexible: bool,
+    /// Whether the tangent is resolved, so that steps in which no motion shows are not suspicious.
+    tangent: bool,
     unstable: Streak,
     suspicious: Streak,
     possible: Streak,
@@ -95,14 +103,20 @@ pub(crate) struct Stiffness {
 
 impl Stiffness {
     /// Watches for `watch`.
-    pub(crate) fn new(watch: Watch) -> Self {
+    pub(crate) fn new(watch: Watch, flexible: bool, tangent: bool) -> Self {
         Self {
             watch,
+            measured: Measured::default(),
+            flexible,
+            tangent,
             unstable: Streak::default(),
             suspicious: Streak::default(),
             possible: Streak::default(),
             earlier: [(0.0, 0.0); 2],
-            next: FIRST,
+            next: match flexible {
+                true => FIRST_FLEXIBLE,
+                false => FIRST,
+            },
         }
     }
 
@@ -121,7 +135,9 @@ impl Stiffness {
         let [dy, df] = stepper.last_stage(to, measure);
         // A ratio of round-off does not estimate λ.
         let known = dy > NOISE * NOISE;
-        let beyond = |most: f64| known && h * (df / dy).sqrt() > most;
+        let size = if known { h * (df / dy).sqrt() } else { 0.0 };
+        self.measured.largest = self.measured.largest.max(size);
+        let beyond = |most: f64| size > most;
         if self.watch == Watch::Stability {
             return self.unstable.count(beyond(UNSTABLE));
         }
@@ -129,8 +145,10 @@ impl Stiffness {
         if steps.is_multiple_of(RECENT) {
             self.earlier = [self.earlier[1], (run.grid.reached(), work_so_far(run))];
         }
-        let suspicious = self.suspicious.count(!known || beyond(SUSPICIOUS));
-        let possible = self.possible.count(!known || beyond(POSSIBLE));
+        let hidden = !known && !self.tangent;
+        let suspicious = self.suspicious.count(hidden || beyond(SUSPICIOUS));
+        let possible = !known || beyond(POSSIBLE) || self.flexible;
+        let possible = self.possible.count(possible);
         (suspicious && steps >= self.next[0]) || (possible && steps >= self.next[1])
     }
 
@@ -169,12 +187,14 @@ impl Stiffness {
             samples: Samples::Uniform(1),
             memory: 0,
             limits: Limits::default(),
+            derivatives: settings.derivatives,
         };
         let mut stretch = Stretch::new(reached, LEAST_WORK.max(PART * spent));
         let all = (model, numbering);
         implicit::march_stretch(all, run.duration, &settings, start, &mut stretch).ok()?;
         let other = stretch.pace()?;
         // The other method starts again at the beginning.
+        self.measured.compared = Some((run.time_reached(), pace / other));
         let own = spent + (1.0 - reached) / pace;
         let takes_over = 1.0 / other < CHEAPER * own && spent + 1.0 / other < IN_ALL * own;
         takes_over.then_some(Some(pace / other))

@@ -130,7 +130,8 @@ pub(crate) struct Simulation {
     ))]
     pub steps: Option<usize>,
     /// Tolerance of the error per step, relative to the lengths and speeds of the scene. Default
-    /// 1e-9 if the number of steps is not given, 1e-5 with finite elements of all nodes.
+    /// 1e-9 if the number of steps is not given, 1e-6 with elastic bodies, 1e-5 with finite elements
+    /// of all nodes.
     #[schemars(extend(
         "minimum" = 1e-14,
         "maximum" = 0.1,

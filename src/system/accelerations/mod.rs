@@ -369,6 +369,23 @@ impl<'a, S: SolveScalar> Accelerations<'a, S> {
         self.rhs = rhs;
     }
 
+    /// Size of the power that loads and drives supply at the velocities `v` with the multipliers λ,
+    /// |f·v| + |λ·Φ_t| \[W\].
+    pub(crate) fn supplied_power(&mut self, v: &[S], lambda: &[S]) -> f64 {
+        let mut all = std::mem::take(&mut self.rhs);
+        all.fill(S::zero());
+        let (forces, rates) = all.split_at_mut(v.len());
+        loads::add_supplying_forces(&self.here(), forces);
+        joints::add_driven_rates(&self.here(), rates);
+        let product = |x: &[S], y: &[S]| -> f64 {
+            let terms = x.iter().zip(y).map(|(&x, &y)| (x * y).re());
+            terms.sum::<f64>().abs()
+        };
+        let power = product(forces, v) + product(rates, lambda);
+        self.rhs = all;
+        power
+    }
+
     /// Rates G v + Φ_t of the constraints at the velocities `v` and the present positions; zero for
     /// redundant rows.
     pub(crate) fn rates(&self, v: &[S], out: &mut [S]) {

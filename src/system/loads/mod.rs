@@ -100,6 +100,22 @@ pub(crate) fn add_forces<S: Scalar>(here: &InMotion<S>, out: &mut [S]) {
     distributed::add_forces(here, out);
 }
 
+/// Adds the forces that supply energy to `out`, in velocity numbering: forces, torques, and loads
+/// on elements. Springs store energy; dampers and friction take it.
+pub(crate) fn add_supplying_forces<S: Scalar>(here: &InMotion<S>, out: &mut [S]) {
+    for_each_load(here.model, here.motions, |_, kind, at| {
+        if !matches!(kind, LoadKind::Force { .. } | LoadKind::Torque { .. }) {
+            return;
+        }
+        let forces = power::forces(kind, at, here.time);
+        for (body, (force, torque)) in at.bodies.into_iter().zip(forces) {
+            let Some(body) = body else { continue };
+            add6(&mut out[here.numbering.velocity(body)..], &force, &torque);
+        }
+    });
+    distributed::add_forces(here, out);
+}
+
 /// Non-zero 3 × 3 blocks of the derivative of a load: (linear, angular) parts.
 struct Blocks {
     /// Forces and torques.

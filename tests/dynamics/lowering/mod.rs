@@ -74,6 +74,7 @@ fn settings(method: Method, spacing: Spacing) -> Settings {
         samples: Samples::Uniform(50),
         limits: Default::default(),
         memory: MEMORY,
+        derivatives: false,
     }
 }
 

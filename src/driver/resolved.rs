@@ -1,0 +1,181 @@
+//! Derivatives that the steps do not resolve.
+//!
+//! The steps bound the error of the motion, and adaptive explicit ones that of its tangent (see
+//! `integrate/explicit/tangent.rs`). What is left is found by halving every step
+//! ([`error`](super::error)): a derivative counts as unresolved if its estimated error is a tenth of
+//! its size or more. A derivative that is small in the gradient of its function, each variable in
+//! its scale, is judged by a tenth of the largest one; one that changes the function by less than
+//! its round-off counts as zero.
+
+use super::check::own_size;
+use super::error::{self, FunctionError};
+use super::evaluate::Evaluated;
+use super::integration::Integration;
+use crate::integrate::{IntegrationFailure, Samples, Settings, Spacing, simulate};
+use crate::problem::Problem;
+
+/// Largest error of a derivative, relative to its size.
+const LARGEST: f64 = 0.1;
+/// Part of the largest derivative of a function that counts for the smaller ones.
+const OF_LARGEST: f64 = 0.1;
+/// A change of a function by this part of the size of its kind, by a typical change of the
+/// variable, counts as zero.
+const NOTHING: f64 = 1e-8;
+/// Derivatives on doubled steps that differ by this part of their size or less: those on the steps
+/// themselves are then far more accurate.
+const ALIKE: f64 = 0.3;
+
+/// A derivative whose estimated error is a tenth of its size or more.
+#[derive(Clone, Debug, PartialEq)]
+pub(crate) struct Unresolved {
+    /// Function and variable, by index.
+    pub of: (usize, usize),
+    /// The derivative and its estimated error.
+    pub value: f64,
+    /// Its estimated error.
+    pub error: f64,
+}
+
+impl Unresolved {
+    /// The derivative with its names.
+    pub(crate) fn describe(&self, problem: &Problem) -> String {
+        let (f, i) = self.of;
+        format!(
+            "the derivative of \"{}\" by \"{}\", {:.6e}, has an estimated error of {:.1e}",
+            problem.function_names[f], problem.variables[i].name, self.value, self.error
+        )
+    }
+}
+
+/// Why a gradient is refused, if it is: names the first derivatives.
+pub(crate) fn refusal(problem: &Problem, found: &[Unresolved]) -> Option<String> {
+    let more = match found.len() {
+        0 => return None,
+        1..=3 => String::new(),
+        n => format!(" and {} more", n - 3),
+    };
+    let named: Vec<String> = found
+        .iter()
+        .take(3)
+        .map(|own| own.describe(problem))
+        .collect();
+    Some(format!(
+        "the steps do not resolve the gradient: {}{more}; {}",
+        named.join("; "),
+        advice(problem)
+    ))
+}
+
+/// What may resolve the derivatives of a problem.
+pub(crate) fn advice(problem: &Problem) -> &'static str {
+    match problem.simulation.spacing {
+        Spacing::Steps(_) => "take more \"steps\", or a shorter duration",
+        Spacing::Tolerance(_) | Spacing::Frozen(_) => {
+            "take a smaller \"tolerance\", given \"steps\", or a shorter duration"
+        }
+    }
+}
+
+/// The unresolved derivatives of all functions at the design `x`.
+///
+/// # Errors
+/// If the simulation or a gradient fails.
+pub(crate) fn of_design(
+    problem: &Problem,
+    x: &[f64],
+) -> Result<Vec<Unresolved>, IntegrationFailure> {
+    let scene = problem.scene(x);
+    let which: Vec<usize> = (0..scene.functions.len()).collect();
+    let mut integration = Integration::new(problem, &scene, Some(&which), true);
+    let (at, _) = Evaluated::with(&mut integration, problem, x)?;
+    by_halves(problem, &at, &which)
+}
+
+/// The unresolved ones of these `gradients` of the functions `which`, first judged by doubled steps,
+/// which cost half as much as the gradients themselves.
+///
+/// # Errors
+/// If the simulation with halved steps or its gradient fails.
+pub(crate) fn of_gradients(
+    problem: &Problem,
+    at: &Evaluated,
+    which: &[usize],
+    gradients: &[Vec<f64>],
+) -> Result<Vec<Unresolved>, IntegrationFailure> {
+    let alike = on_doubled_steps(problem, at, which).is_some_and(|coarse| {
+        let rows = which.iter().zip(gradients.iter().zip(&coarse));
+        rows.into_iter().all(|(&f, (fine, coarse))| {
+            let sizes = sizes(problem, at, f, fine);
+            let pairs = fine.iter().zip(coarse).zip(sizes);
+            pairs
+                .into_iter()
+                .all(|((x, y), size)| (x - y).abs() <= ALIKE * size)
+        })
+    });
+    match alike {
+        true => Ok(Vec::new()),
+        false => by_halves(problem, at, which),
+    }
+}
+
+/// The gradients on doubled steps; `None` if there are none.
+fn on_doubled_steps(problem: &Problem, at: &Evaluated, which: &[usize]) -> Option<Vec<Vec<f64>>> {
+    // An event would have to be settled again.
+    if at.scene.until.is_some() {
+        return None;
+    }
+    let run = &at.run;
+    let settings = Settings {
+        solver: run.solver,
+        spacing: Spacing::Frozen(run.grid.doubled()?),
+        samples: match (run.has_cells, run.last()) {
+            (true, _) => Samples::Quadrature(0),
+            (false, 1) => Samples::Uniform(1),
+            (false, _) => Samples::StepEnds,
+        },
+        limits: problem.simulation.limits.clone(),
+        ..Settings::steps(run.method, 1)
+    };
+    let coarse = Evaluated {
+        x: at.x.clone(),
+        scene: at.scene.clone(),
+        run: simulate(&at.scene.model, run.duration, &settings).ok()?,
+    };
+    Some(coarse.gradients(problem, which).ok()?.0)
+}
+
+fn by_halves(
+    problem: &Problem,
+    at: &Evaluated,
+    which: &[usize],
+) -> Result<Vec<Unresolved>, IntegrationFailure> {
+    let found = error::estimate(problem, at, which, true)?;
+    let of = |own: &FunctionError| {
+        let function = own.function;
+        let values: Vec<f64> = own.gradient.iter().map(|d| d.value).collect();
+        let sizes = sizes(problem, at, function, &values);
+        let each = own.gradient.iter().zip(sizes).enumerate();
+        let beyond = each.filter(|(_, (d, size))| d.error > LARGEST * size || d.error.is_nan());
+        let named = beyond.map(|(i, (d, _))| Unresolved {
+            of: (function, i),
+            value: d.value,
+            error: d.error,
+        });
+        named.collect::<Vec<_>>()
+    };
+    Ok(found.iter().flat_map(of).collect())
+}
+
+/// What an error of each derivative of function f is compared with.
+fn sizes(problem: &Problem, at: &Evaluated, f: usize, gradient: &[f64]) -> Vec<f64> {
+    let scale = |i: usize| problem.variables[i].scale;
+    let scaled = gradient.iter().enumerate().map(|(i, d)| d.abs() * scale(i));
+    let largest = scaled.fold(0.0, f64::max);
+    let nothing = NOTHING / LARGEST * own_size(at, f);
+    let of = |(i, d): (usize, &f64)| {
+        let change = scale(i).max(at.x[i].abs());
+        let by_others = OF_LARGEST * largest / scale(i);
+        d.abs().max(by_others).max(nothing / change)
+    };
+    gradient.iter().enumerate().map(of).collect()
+}
