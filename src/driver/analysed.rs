@@ -227,9 +227,10 @@ impl Simulated {
                 let kinks = simulation.at.kinks(problem, used.iter().copied());
                 simulation.warning.iter().cloned().chain(kinks).collect()
             }
-            Self::Statics(at) => statics::error::doubts(problem, at, used)
-                .into_iter()
-                .collect(),
+            Self::Statics(at) => {
+                let doubts = statics::error::doubts(problem, at, used);
+                doubts.into_iter().chain(at.large_rotation()).collect()
+            }
         }
     }
 

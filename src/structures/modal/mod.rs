@@ -11,6 +11,7 @@ pub(crate) mod loaded;
 mod mass_integrals;
 pub(crate) mod sections;
 mod shapes;
+mod twist;
 pub(crate) mod written;
 
 pub(crate) use beam::{BeamDamping, BeamModes, FlexibleBeam, StrainMeasure};
