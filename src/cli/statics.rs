@@ -70,6 +70,9 @@ pub(crate) fn simulate(job: &Job, problem: &Problem, json: bool) -> Result<u8, F
         if let Some(doubt) = doubt.flatten() {
             all["warning"] = json!(doubt);
         }
+        if let Some(warning) = design.large_rotation() {
+            all["warnings"] = json!([warning]);
+        }
         let text = serde_json::to_string_pretty(&all).map_err(Failure::numerical)?;
         print(&(text + "\n"))?;
     } else {
@@ -149,6 +152,9 @@ fn summary(problem: &Problem, design: &StaticDesign) -> String {
         }
         text += &told(design.smoothed(f), found.peak.is_some());
         text.push('\n');
+    }
+    if let Some(warning) = design.large_rotation() {
+        let _ = writeln!(text, "  warning: {warning}");
     }
     text
 }

@@ -283,9 +283,10 @@ impl Simulated {
                 let doubts = simulation.at.doubts(problem, used.iter().copied());
                 simulation.warning.iter().cloned().chain(doubts).collect()
             }
-            Self::Statics(at) => statics::error::doubts(problem, at, used)
-                .into_iter()
-                .collect(),
+            Self::Statics(at) => {
+                let doubts = statics::error::doubts(problem, at, used);
+                doubts.into_iter().chain(at.large_rotation()).collect()
+            }
         }
     }
 

@@ -1,20 +1,25 @@
-//! Where the equations of flexible bodies are no longer accurate: sections that turn far from the axes of their
-//! body, large strains, bodies of linear strain that spin fast, inertia that depends on the observer, and reduced
-//! bases that lock.
+//! Where the equations of flexible bodies are no longer accurate: bodies that turn far from their own axes (see
+//! [`crate::structures::turned`]), beams near lateral buckling whose twist and bending do not couple, large strains,
+//! bodies of linear strain that spin fast, inertia that depends on the observer, and reduced bases that lock.
 
 use crate::integrate::{IntegrationFailure, Trajectory};
-use crate::model::{FlexibleBody, Form, Inertia, Model};
+use crate::model::flexible::{Modes, carriers};
+use crate::model::{FlexibleBody, Form, Inertia, JointKind, Model};
 use crate::structures::modal::ModalNumbers;
 use crate::structures::modal::frequencies::{Held, frequencies};
+use crate::structures::turned::{LARGE_ERROR, Turned};
 use crate::system::attachment::section_rotation;
 use crate::system::reduction::locked_part;
 use crate::system::{BodyMotion, flexible};
 use std::f64::consts::TAU;
 
-/// Rotation of a section relative to the frame of its body above which von Karman's strains and the
-/// linear rotations of sections are no longer accurate \[rad\].
-const LARGE_ROTATION: f64 = 0.15;
-
+/// The axes of a section are those turned by the tangent of its rotation θ, so a body that is welded to it is turned by
+/// θ³/3 too little.
+const OF_WELDS: f64 = 1.0 / 3.0;
+/// Of bodies from files only sections are known. A cantilever with a force at its end errs by 0.42 θ².
+const OF_FILES: f64 = 0.42;
+/// Part of the moment of lateral buckling above which a beam that cannot buckle is told.
+const LATERAL: f64 = 0.5;
 /// Strain above which stress is no longer proportional to it.
 const LARGE_STRAIN: f64 = 0.1;
 /// Part of the strain energy of reduced shells that is locked above which a run warns.
@@ -36,6 +41,7 @@ pub(super) fn warning(model: &Model<f64>, run: &Trajectory<f64>) -> Option<Strin
     let all = [
         truncated_inertia(model),
         large_rotation(model, run, &peaks),
+        lateral(model, run),
         large_strain(model, run, &peaks),
         fast_spin(model, run),
         locked(model, run, &peaks),
@@ -113,50 +119,134 @@ fn truncated_inertia(model: &Model<f64>) -> Option<String> {
     })
 }
 
-/// The section, or the surface of shells or axis of beams, that turns farthest, if it turns too far.
+/// How far a body is turned at an instant.
+struct At {
+    sample: usize,
+    turned: Turned,
+    /// Of its section whose rotation spoils most: the angle \[rad\], and the part by which it errs.
+    section: (f64, f64),
+}
+
+/// A section of a body, and the factor of the square of its rotation in the error.
+type Section<'m> = (&'m Modes<f64>, f64);
+
+/// The sections of each flexible body whose rotations spoil something: those that are welded to another body, and all of
+/// bodies from files.
+fn sections(model: &Model<f64>) -> Vec<Vec<Section<'_>>> {
+    let mut all = vec![Vec::new(); model.flexible.len()];
+    let mut welded = vec![false; model.bodies.len()];
+    let welds = model
+        .joints
+        .iter()
+        .filter(|joint| joint.kind == JointKind::Weld);
+    for body in welds.flat_map(|joint| [Some(joint.body_a), joint.body_b]) {
+        body.into_iter().for_each(|body| welded[body] = true);
+    }
+    let mut owners = vec![None; model.bodies.len()];
+    for (i, body) in model.flexible.iter().enumerate() {
+        owners[body.carriers..][..carriers(body.modes()).count()].fill(Some(i));
+    }
+    for joint in &model.joints {
+        let owner = joint.modes.as_ref().and_then(|modes| {
+            let owner = owners[modes.places.first()?.0]?;
+            Some((owner, modes))
+        });
+        let Some((owner, modes)) = owner else {
+            continue;
+        };
+        let of_weld = if joint.body_b.is_some_and(|body| welded[body]) {
+            OF_WELDS
+        } else {
+            0.0
+        };
+        let of_file = match &model.flexible[owner].form {
+            Form::Modal(modal) if modal.shells.is_none() && modal.sections.is_empty() => OF_FILES,
+            Form::Modal(_) | Form::Finite(_) => 0.0,
+        };
+        if of_weld + of_file > 0.0 {
+            all[owner].push((modes, of_weld + of_file));
+        }
+    }
+    all
+}
+
+/// The body whose large rotations spoil its deformation most, if they spoil it much.
 fn large_rotation(
     model: &Model<f64>,
     run: &Trajectory<f64>,
     peaks: &[Option<usize>],
 ) -> Option<String> {
-    let mut most: (f64, usize, &str) = (0.0, 0, "");
-    // Inside bodies: the angle, the sample, the body and the element.
-    let mut inside: (f64, usize, &str, Option<usize>) = (0.0, 0, "", None);
+    let sections = sections(model);
+    let mut all: Vec<(Turned, Vec<At>)> = Vec::new();
+    all.resize_with(model.flexible.len(), Default::default);
     let mut motions = Vec::new();
     for k in 0..=run.last() {
         BodyMotion::all(&run.numbering, run.q(k), run.v(k), &mut motions);
-        for joint in &model.joints {
-            let Some(modes) = &joint.modes else { continue };
-            let angle = section_rotation(modes, &motions).norm();
-            if angle > most.0 {
-                most = (angle, k, &joint.name);
+        for (i, body) in model.flexible.iter().enumerate() {
+            let shells = body.form.shells().is_some();
+            let turned = match !shells || is_looked_at(run, k) || peaks[i] == Some(k) {
+                true => flexible::turned(body, &motions).unwrap_or_default(),
+                false => Turned::default(),
+            };
+            let mut section = (0.0, 0.0);
+            for &(modes, factor) in &sections[i] {
+                let angle = section_rotation(modes, &motions).norm();
+                if factor * angle * angle > section.1 {
+                    section = (angle, factor * angle * angle);
+                }
             }
+            all[i].0.raise(&turned);
+            all[i].1.push(At {
+                sample: k,
+                turned,
+                section,
+            });
         }
-        for (body, peak) in model.flexible.iter().zip(peaks) {
-            let slope = flexible::axial_slope(body, &motions);
-            if slope > inside.0 {
-                inside = (slope, k, &body.name, None);
-            }
-            if (is_looked_at(run, k) || *peak == Some(k))
-                && let Some((angle, element)) = flexible::turn(body, &motions)
-                && angle > inside.0
-            {
-                inside = (angle, k, &body.name, Some(element));
+    }
+    let mut most: Option<(f64, &At, &FlexibleBody<f64>)> = None;
+    for (body, (of_body, found)) in model.flexible.iter().zip(&all) {
+        for at in found {
+            let error = at.turned.error(of_body) + at.section.1;
+            if most.is_none_or(|most| error > most.0) {
+                most = Some((error, at, body));
             }
         }
     }
-    let (angle, k, what) = if most.0 > LARGE_ROTATION {
-        let (angle, k, name) = most;
-        (angle, k, format!("the section \"{name}\""))
-    } else {
-        let (angle, k, name, element) = inside;
-        let place = element.map_or("an axis".into(), |element| format!("element {element}"));
-        (angle, k, format!("{place} of \"{name}\""))
+    let (error, at, body) = most.filter(|most| most.0 > LARGE_ERROR)?;
+    let (angle, element) = at.turned.most;
+    let place = match body.form.shells() {
+        Some(_) if angle > at.section.0 => format!("element {element} of "),
+        _ => String::new(),
     };
-    (angle > LARGE_ROTATION).then(|| {
+    Some(format!(
+        "{place}\"{}\" turns by {:.2} rad relative to its body's frame at t = {:.4} s: its deformation errs by about \
+         {:.1} %, since strains and joints hold for small rotations; divide the body",
+        body.name,
+        angle.max(at.section.0),
+        run.time(at.sample),
+        100.0 * error
+    ))
+}
+
+/// The beam without coupling of twist and bending whose moment comes near lateral buckling, if one does.
+fn lateral(model: &Model<f64>, run: &Trajectory<f64>) -> Option<String> {
+    let mut most: (f64, usize, &str) = (0.0, 0, "");
+    let mut motions = Vec::new();
+    for k in 0..=run.last() {
+        BodyMotion::all(&run.numbering, run.q(k), run.v(k), &mut motions);
+        for body in &model.flexible {
+            let part = flexible::of_lateral_moment(body, &motions);
+            if part > most.0 {
+                most = (part, k, &body.name);
+            }
+        }
+    }
+    let (part, k, name) = most;
+    (part > LATERAL).then(|| {
         format!(
-            "{what} turns by {angle:.2} rad relative to its body's frame at \
-             t = {:.4} s; above {LARGE_ROTATION} rad its strains are inaccurate: divide the body",
+            "\"{name}\" bears {part:.2} of the moment π √(EI GJ)/L that buckles it sideways between hinges at t = {:.4} s, \
+             and its twist and bending do not couple: give it \"von_karman\" strain and functions of \
+             \"bending_y\", \"bending_z\" and \"torsion\"",
             run.time(k)
         )
     })

@@ -24,6 +24,7 @@ use super::finite::FiniteElements;
 use super::reduced::ReducedShells;
 pub(crate) use super::shapes::{ModalInertia, ModalStiffness, Quadratic, Strain};
 use crate::math::{Scalar, Vec3, parameters};
+use std::sync::Arc;
 
 /// A flexible body.
 #[derive(Clone, Debug)]
@@ -75,6 +76,28 @@ pub(crate) struct Modal<S> {
     pub damping: Vec<S>,
     /// Further numbers of a body of shells in a reduced basis.
     pub shells: Option<ReducedShells<S>>,
+    /// Sections of a beam, which show how far it is turned; none of other bodies.
+    pub sections: Arc<[BeamSection]>,
+}
+
+/// What the coordinates of a beam do to a section, by rows, for estimates.
+#[derive(Clone, Debug)]
+pub(crate) struct BeamSection {
+    /// The length that it stands for \[m\].
+    pub size: f64,
+    /// Whether slopes stretch it.
+    pub von_karman: bool,
+    /// Of a beam that would buckle laterally if its twist and bending coupled: which of the stiffnesses is that of
+    /// bending about the strong axis, and the uniform moment that buckles it between hinges, π √(EI GJ)/L [N m].
+    pub lateral: Option<(usize, f64)>,
+    /// EA, GJ, EI2, EI3.
+    pub stiffness: [f64; 4],
+    /// v' and w'.
+    pub slopes: [Vec<f64>; 2],
+    /// φ.
+    pub twist: Vec<f64>,
+    /// u', twist and curvatures, in the order of the stiffnesses.
+    pub strains: [Vec<f64>; 4],
 }
 
 /// How an attachment's frame moves with the elastic coordinates: in the axes of the body, its point at
@@ -158,6 +181,6 @@ parameters!(struct FlexibleBody {
 
 parameters!(enum Form { Modal(; modal), Finite(; finite) });
 
-parameters!(struct Modal {; inertia, stiffness, damping, shells });
+parameters!(struct Modal { sections; inertia, stiffness, damping, shells });
 
 parameters!(struct Modes { places; displacement, rotation });

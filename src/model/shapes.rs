@@ -31,6 +31,8 @@ pub(crate) struct ModalStiffness<S> {
 pub(crate) struct Strain<S> {
     /// k_p, for example E A times the weight of the quadrature.
     pub weight: S,
+    /// Whether it is that of a beam along its axis.
+    pub axial: bool,
     /// e_p.
     pub strain: Quadratic<S>,
 }
@@ -49,7 +51,7 @@ parameters!(struct ModalInertia {; centre, static_moments, with_position, produc
 
 parameters!(struct ModalStiffness {; linear, strains });
 
-parameters!(struct Strain {; weight, strain });
+parameters!(struct Strain { axial; weight, strain });
 
 parameters!(struct Quadratic {; linear, squares });
 

@@ -27,13 +27,14 @@ pub(crate) fn modes(beam: &Beam) -> BeamModes {
         number(beam.modes.bending_y, BENDING),
         number(beam.modes.bending_z, BENDING),
     ];
+    let torsion = number(beam.modes.torsion, TORSION);
     let stretch = match beam.strain {
-        Strain::VonKarman => BeamModes::companions(bending),
+        Strain::VonKarman => BeamModes::companions(bending, torsion),
         Strain::Linear => LINEAR_STRETCH,
     };
     BeamModes {
         bending,
-        torsion: number(beam.modes.torsion, TORSION),
+        torsion,
         stretch: beam.modes.stretch.map_or(stretch, |n| n as usize),
     }
 }

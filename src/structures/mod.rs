@@ -29,6 +29,7 @@ pub(crate) mod state;
 pub mod statics;
 pub mod structure;
 pub mod supports;
+pub(crate) mod turned;
 pub mod von_karman;
 
 pub use beam::{Section, SectionFault, SectionValues};

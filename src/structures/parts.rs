@@ -168,11 +168,10 @@ pub(crate) fn strains<S: Scalar>(
     };
     let one = |strain: BeamStrain<S>| Strain {
         weight: strain.weight,
+        axial: strain.axial,
         strain: Quadratic {
             linear: row(&strain.linear),
-            squares: (strain.slopes.iter().flatten())
-                .map(|slope| (S::one(), row(slope)))
-                .collect(),
+            squares: (strain.squares.iter()).map(|(c, g)| (*c, row(g))).collect(),
         },
     };
     beam.strains().into_iter().map(one).collect()

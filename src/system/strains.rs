@@ -57,7 +57,8 @@ pub(crate) fn add_forces<S: Scalar>(own: &ModalStiffness<S>, q: &[S], out: &mut 
 
 /// Adds scale · g hᵀ to the elastic part of a block.
 fn add_square<S: Scalar>(block: &mut Block<S>, scale: S, g: &[S], h: &[S]) {
-    for (i, &g) in g.iter().enumerate() {
+    // Of the coordinates of a beam a strain has those of one kind or two.
+    for (i, &g) in g.iter().enumerate().filter(|(_, g)| **g != S::zero()) {
         let row = scale * g;
         for (j, &h) in h.iter().enumerate() {
             block.add(6 + i, 6 + j, row * h);

@@ -188,6 +188,9 @@ fn bodies_that_turn_far_inside_are_told() {
         "functions": {"strain energy": {"final": {"strain_energy": {"body": "beam"}}}},
         "variables": {"young": {"path": "/bodies/beam/beam/material/young", "lower": 1e6}}
     });
+    // Linear strain, without functions at points.
+    let mut linear = beam.clone();
+    linear["bodies"]["beam"]["beam"]["strain"] = json!("linear");
     for turn in [0.1, 0.13, 0.18, 0.4] {
         let stiffness = 1e9 * 0.01_f64.powi(3) / 12.0;
         plate["loads"]["push"]["area"]["magnitude"] = json!(6.0 * turn * stiffness);
@@ -195,5 +198,7 @@ fn bodies_that_turn_far_inside_are_told() {
         let weight = 6.0 * turn * stiffness / (1000.0 * 0.01);
         beam["gravity"] = json!([0, -weight, 0]);
         bent(&beam, turn);
+        linear["gravity"] = json!([0, -weight, 0]);
+        bent(&linear, turn);
     }
 }

@@ -18,6 +18,7 @@ mod fixed_steps;
 mod flexible_families;
 mod flexible_scenes;
 mod last_modes;
+mod lateral;
 mod layers;
 mod modal;
 mod modal_faults;

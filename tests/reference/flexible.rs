@@ -75,6 +75,7 @@ pub fn modal(
         stiffness,
         damping,
         shells: None,
+        sections: [].into(),
     })
 }
 
@@ -113,6 +114,7 @@ fn form(numbers: &mut Numbers, modes: usize) -> Quadratic<f64> {
 /// Any stiffness with quadratic strains.
 pub fn stiffness(numbers: &mut Numbers, modes: usize, size: f64) -> ModalStiffness<f64> {
     let strain = |numbers: &mut Numbers| Strain {
+        axial: true,
         weight: size * (1.0 + 0.5 * numbers.next()),
         strain: form(numbers, modes),
     };

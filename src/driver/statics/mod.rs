@@ -5,6 +5,7 @@ pub(crate) mod error;
 pub(crate) mod figures;
 mod inspect;
 mod lifted;
+mod limits;
 pub(crate) mod precision;
 
 use super::evaluate::Derivative;

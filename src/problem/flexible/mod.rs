@@ -142,6 +142,7 @@ impl<S: Scalar> FlexibleBodies<S> {
                     stiffness: numbers.stiffness,
                     damping: numbers.damping,
                     shells: None,
+                    sections: shapes.sections(),
                 }),
             );
             all.bodies.push(Elastic {

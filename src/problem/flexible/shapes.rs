@@ -1,6 +1,7 @@
 //! How points of beams and of bodies of files move with their coordinates, and their numbers.
 
 use crate::math::{Scalar, Vec3};
+use crate::model::flexible::BeamSection;
 use crate::problem::schema::mechanics::Body;
 use crate::problem::{beam, modal};
 use crate::structures::modal::loaded::Loaded;
@@ -15,6 +16,14 @@ pub(crate) enum Shapes<S> {
 }
 
 impl<S: Scalar> Shapes<S> {
+    /// Sections of a beam (see [`crate::model::flexible::Modal`]).
+    pub(super) fn sections(&self) -> Arc<[BeamSection]> {
+        match self {
+            Self::Beam(beam) => beam.sections().into(),
+            Self::Modal(..) => [].into(),
+        }
+    }
+
     pub(super) fn point(&self, point: Vec3<S>) -> PointModes<S> {
         match self {
             Self::Beam(beam) => beam.point(point.x / beam.length, [point.y, point.z]),

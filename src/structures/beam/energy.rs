@@ -5,96 +5,21 @@ use super::element::{Beam, BeamMotion};
 use super::frame::{Axes, add_sum_transpose, shape, strain_points, sum};
 use super::line::{Line, LineCotangent};
 use super::section::SectionValues;
+use super::strain::{AtPoint, LOCAL, STRAINS, Strains, add_local_transpose, gyration, local};
+use crate::math::slices::add_scaled;
 use crate::math::{Scalar, Vec3};
 use crate::structures::shell::{ElementMatrix, MOST_UNKNOWNS};
 
-/// Motion at a point: w,r, θ and θ,r.
-struct AtPoint<S> {
-    w: Vec3<S>,
-    turn: Vec3<S>,
-    turn_by: Vec3<S>,
-}
-
-/// (ε, γ2, γ3, κ1, κ2, κ3) at a point, with the slopes e2·w,s and e3·w,s.
-struct Strain<S> {
-    values: [S; 6],
-    slopes: [S; 2],
-}
-
-impl<S: Scalar> Strain<S> {
-    fn new(axes: &Axes<S>, at: &AtPoint<S>, von_karman: bool) -> Self {
-        let per = |x: S| x / axes.speed;
-        let slopes = [axes.e2, axes.e3].map(|e| per(e.dot(&at.w)));
-        let mut axial = per(axes.t.dot(&at.w));
-        if von_karman {
-            axial += (slopes[0] * slopes[0] + slopes[1] * slopes[1]) * 0.5;
-        }
-        Self {
-            values: [
-                axial,
-                slopes[0] - axes.e3.dot(&at.turn),
-                slopes[1] + axes.e2.dot(&at.turn),
-                per(axes.t.dot(&at.turn_by)),
-                per(axes.e2.dot(&at.turn_by)),
-                per(axes.e3.dot(&at.turn_by)),
-            ],
-            slopes,
-        }
-    }
-
-    /// Derivative of strain `k` by the motion.
-    fn gradient(&self, axes: &Axes<S>, at: &AtPoint<S>, von_karman: bool, k: usize) -> AtPoint<S> {
-        let mut unit = [S::zero(); 6];
-        unit[k] = S::one();
-        let mut gradient = AtPoint {
-            w: Vec3::zeros(),
-            turn: Vec3::zeros(),
-            turn_by: Vec3::zeros(),
-        };
-        let unused = &mut Axes::zeros();
-        self.add_transpose(axes, at, von_karman, &unit, unused, &mut gradient);
-        gradient
-    }
-
-    /// Transpose of the derivative of [`Strain::new`], added to the cotangents of axes and motion.
-    fn add_transpose(
-        &self,
-        axes: &Axes<S>,
-        at: &AtPoint<S>,
-        von_karman: bool,
-        bar: &[S; 6],
-        axes_to: &mut Axes<S>,
-        to: &mut AtPoint<S>,
-    ) {
-        let per = S::one() / axes.speed;
-        let [axial, g2, g3, k1, k2, k3] = *bar;
-        let mut s2 = g2;
-        let mut s3 = g3;
-        if von_karman {
-            s2 += axial * self.slopes[0];
-            s3 += axial * self.slopes[1];
-        }
-        axes_to.t += (at.w * axial + at.turn_by * k1) * per;
-        axes_to.e2 += (at.w * s2 + at.turn_by * k2) * per + at.turn * g3;
-        axes_to.e3 += (at.w * s3 + at.turn_by * k3) * per - at.turn * g2;
-        to.w += (axes.t * axial + axes.e2 * s2 + axes.e3 * s3) * per;
-        to.turn += axes.e2 * g3 - axes.e3 * g2;
-        to.turn_by += (axes.t * k1 + axes.e2 * k2 + axes.e3 * k3) * per;
-        let linear = axes.t.dot(&at.w) * per;
-        let curved = k1 * self.values[3] + k2 * self.values[4] + k3 * self.values[5];
-        let stretched = axial * linear + s2 * self.slopes[0] + s3 * self.slopes[1];
-        axes_to.speed -= (stretched + curved) * per;
-    }
-}
-
-/// A strain e = b·v + ½ Σ (g_s·v)² of a beam at a point, with its weight in the energy ½ k e².
+/// A strain e = b·v + ½ Σ c_s (g_s·v)² of a beam at a point, with its weight in the energy ½ k e².
 pub(crate) struct BeamStrain<S> {
     /// k: stiffness times length.
     pub(crate) weight: S,
+    /// Whether it is that along the axis.
+    pub(crate) axial: bool,
     /// b.
     pub(crate) linear: [S; MOST_UNKNOWNS],
-    /// g_1 and g_2 of the axial strain.
-    pub(crate) slopes: Option<[[S; MOST_UNKNOWNS]; 2]>,
+    /// (c_s, g_s).
+    pub(crate) squares: Vec<(S, [S; MOST_UNKNOWNS])>,
 }
 
 impl<S: Scalar> Beam<S> {
@@ -131,11 +56,12 @@ impl<S: Scalar> Beam<S> {
         let line = Line::new(self);
         let motion = line.motion(motion);
         let stiffness = self.section.values(&self.material).stiffness;
+        let strains = Strains::new(&stiffness, von_karman);
         strain_points()
             .iter()
             .fold(S::zero(), |energy, &(r, weight)| {
                 let (axes, at) = self.at(&line, &motion, r);
-                let strain = Strain::new(&axes, &at, von_karman).values;
+                let strain = strains.values(&local(&axes, &at));
                 let pairs = stiffness.iter().zip(&strain);
                 let density = pairs.fold(S::zero(), |sum, (&c, &e)| sum + c * e * e);
                 energy + density * axes.speed * (0.5 * weight)
@@ -154,32 +80,28 @@ impl<S: Scalar> Beam<S> {
         let line = Line::new(self);
         let moved = line.motion(motion);
         let stiffness = self.section.values(&self.material).stiffness;
+        let strains = Strains::new(&stiffness, von_karman);
         let mut values_bar = SectionValues::zeros();
+        let mut gyration_bar = S::zero();
         let mut bar = LineCotangent::zeros();
         for (r, weight) in strain_points() {
             let (axes, at) = self.at(&line, &moved, r);
-            let strain = Strain::new(&axes, &at, von_karman);
+            let x = local(&axes, &at);
+            let gradients = strains.gradients(&x);
             let length = axes.speed * weight;
             let mut axes_bar = Axes::zeros();
-            let mut at_bar = AtPoint {
-                w: Vec3::zeros(),
-                turn: Vec3::zeros(),
-                turn_by: Vec3::zeros(),
-            };
-            let mut strain_bar = [S::zero(); 6];
-            for (k, &e) in strain.values.iter().enumerate() {
-                strain_bar[k] = stiffness[k] * e * length;
+            let mut at_bar = AtPoint::zeros();
+            let mut x_bar = [S::zero(); LOCAL];
+            for (k, e) in strains.values(&x).into_iter().enumerate() {
+                let n = stiffness[k] * e;
+                add_scaled(&mut x_bar, n * length, &gradients[k]);
                 values_bar.stiffness[k] += e * e * length * 0.5;
-                axes_bar.speed += stiffness[k] * e * e * (0.5 * weight);
+                axes_bar.speed += n * e * (0.5 * weight);
+                if k == 0 && von_karman {
+                    gyration_bar += n * length * x[6] * x[6] * 0.5;
+                }
             }
-            strain.add_transpose(
-                &axes,
-                &at,
-                von_karman,
-                &strain_bar,
-                &mut axes_bar,
-                &mut at_bar,
-            );
+            add_local_transpose((&axes, &at, &x), &x_bar, &mut axes_bar, &mut at_bar);
             let (n, slope) = shape(r);
             add_sum_transpose(&slope, &at_bar.w, &mut bar.displacement);
             add_sum_transpose(&n, &at_bar.turn, &mut bar.rotation);
@@ -194,6 +116,10 @@ impl<S: Scalar> Beam<S> {
             add_sum_transpose(&slope, &tangent, &mut bar.points);
         }
         line.add_transpose(self, motion, &bar, force, to);
+        let per = gyration_bar / stiffness[0];
+        values_bar.stiffness[0] -= per * gyration(&stiffness);
+        values_bar.stiffness[4] += per;
+        values_bar.stiffness[5] += per;
         self.section.add_values_transpose(
             &self.material,
             &values_bar,
@@ -206,22 +132,19 @@ impl<S: Scalar> Beam<S> {
     pub(crate) fn strains(&self) -> Vec<BeamStrain<S>> {
         let (line, still) = (Line::new(self), BeamMotion::zeros());
         let stiffness = self.section.values(&self.material).stiffness;
-        let mut all = Vec::with_capacity(6 * strain_points().len());
+        let strains = Strains::new(&stiffness, true);
+        let mut all = Vec::with_capacity(STRAINS * strain_points().len());
         for (r, weight) in strain_points() {
-            let (axes, at) = self.at(&line, &still, r);
-            let strain = Strain::new(&axes, &at, false);
-            for (k, stiffness) in stiffness.iter().enumerate() {
-                let gradient = strain.gradient(&axes, &at, false, k);
-                let slope = |e: Vec3<S>| AtPoint {
-                    w: e / axes.speed,
-                    turn: Vec3::zeros(),
-                    turn_by: Vec3::zeros(),
-                };
-                let slopes = [axes.e2, axes.e3].map(|e| line_row(&line, r, &slope(e)));
+            let (axes, _) = self.at(&line, &still, r);
+            let rows = local_rows(&line, &axes, r);
+            for (k, gradient) in strains.gradients(&[S::zero(); LOCAL]).iter().enumerate() {
+                let own = strains.products.iter().filter(|product| product.0 == k);
                 all.push(BeamStrain {
-                    weight: *stiffness * axes.speed * weight,
-                    linear: line_row(&line, r, &gradient),
-                    slopes: (k == 0).then_some(slopes),
+                    weight: stiffness[k] * axes.speed * weight,
+                    axial: k == 0,
+                    linear: combined(&rows, gradient),
+                    squares: (own.flat_map(|&(_, i, j, c)| squares(&rows, (i, j, c), axes.speed)))
+                        .collect(),
                 });
             }
         }
@@ -239,28 +162,108 @@ impl<S: Scalar> Beam<S> {
         let line = Line::new(self);
         let moved = line.motion(motion);
         let stiffness = self.section.values(&self.material).stiffness;
+        let strains = Strains::new(&stiffness, von_karman);
         matrix.clear(6 * BEAM_NODES);
         for (r, weight) in strain_points() {
             let (axes, at) = self.at(&line, &moved, r);
-            let strain = Strain::new(&axes, &at, von_karman);
+            let x = local(&axes, &at);
             let length = axes.speed * weight;
-            for k in 0..6 {
-                let gradient = strain.gradient(&axes, &at, von_karman, k);
-                let row = line_row(&line, r, &gradient);
-                add_square(matrix, &row, stiffness[k] * length);
-            }
-            if von_karman {
-                let force = stiffness[0] * strain.values[0] * length;
-                for e in [axes.e2, axes.e3] {
-                    let gradient = AtPoint {
-                        w: e / axes.speed,
-                        turn: Vec3::zeros(),
-                        turn_by: Vec3::zeros(),
-                    };
-                    add_square(matrix, &line_row(&line, r, &gradient), force);
+            let rows = local_rows(&line, &axes, r);
+            let (values, gradients) = (strains.values(&x), strains.gradients(&x));
+            let mut second = [[S::zero(); LOCAL]; LOCAL];
+            let forces: [S; STRAINS] = std::array::from_fn(|k| stiffness[k] * values[k] * length);
+            strains.add_curved(&forces, &mut second);
+            for (k, gradient) in gradients.iter().enumerate() {
+                for (row, &g) in second.iter_mut().zip(gradient) {
+                    add_scaled(row, g * stiffness[k] * length, gradient);
                 }
             }
+            for (row, by) in rows.iter().zip(&second) {
+                add_product(matrix, row, &combined(&rows, by));
+            }
         }
+    }
+}
+
+/// The numbers of a motion at a point of the line as rows over the unknowns of the nodes.
+fn local_rows<S: Scalar>(line: &Line<S>, axes: &Axes<S>, r: f64) -> [[S; MOST_UNKNOWNS]; LOCAL] {
+    let still = AtPoint::zeros();
+    std::array::from_fn(|i| {
+        let mut bar = [S::zero(); LOCAL];
+        bar[i] = S::one();
+        let mut gradient = AtPoint::zeros();
+        let at = (axes, &still, &[S::zero(); LOCAL]);
+        add_local_transpose(at, &bar, &mut Axes::zeros(), &mut gradient);
+        line_row(line, r, &gradient)
+    })
+}
+
+/// Σ_i factor_i row_i.
+fn combined<S: Scalar>(
+    rows: &[[S; MOST_UNKNOWNS]; LOCAL],
+    factors: &[S; LOCAL],
+) -> [S; MOST_UNKNOWNS] {
+    let mut out = [S::zero(); MOST_UNKNOWNS];
+    for (row, &factor) in rows.iter().zip(factors) {
+        if factor != S::zero() {
+            add_scaled(&mut out, factor, row);
+        }
+    }
+    out
+}
+
+/// A product c x_i x_j as half the sum of squares ½ Σ c_s (g_s·v)². A slope by length, number 6 and above, is
+/// taken times the length, so that sum and difference with a rotation are of like size.
+fn squares<S: Scalar>(
+    rows: &[[S; MOST_UNKNOWNS]; LOCAL],
+    (i, j, c): (usize, usize, S),
+    length: S,
+) -> Vec<(S, [S; MOST_UNKNOWNS])> {
+    if i == j {
+        return vec![(c * 2.0, rows[i])];
+    }
+    let unit = |k: usize| if k < 6 { S::one() } else { length };
+    let own = c * 0.5 / (unit(i) * unit(j));
+    let of = |sign: f64| {
+        let mut factors = [S::zero(); LOCAL];
+        factors[i] = unit(i);
+        factors[j] = unit(j) * sign;
+        (own * sign, combined(rows, &factors))
+    };
+    vec![of(1.0), of(-1.0)]
+}
+
+/// How a beam is turned at a point, and its energies there.
+pub(crate) struct TurnedSection<S> {
+    /// Length that the point stands for \[m\].
+    pub(crate) length: S,
+    /// Slope of the axis.
+    pub(crate) slope: S,
+    /// Twist \[rad\].
+    pub(crate) twist: S,
+    /// Strain energies of stretch, of bending and shear, and of torsion \[J\].
+    pub(crate) energies: [S; 3],
+}
+
+impl<S: Scalar> Beam<S> {
+    /// The turned sections at the points of the strains.
+    pub(crate) fn turned(&self, motion: &BeamMotion<S>, von_karman: bool) -> [TurnedSection<S>; 2] {
+        let line = Line::new(self);
+        let motion = line.motion(motion);
+        let stiffness = self.section.values(&self.material).stiffness;
+        let strains = Strains::new(&stiffness, von_karman);
+        strain_points().map(|(r, weight)| {
+            let (axes, at) = self.at(&line, &motion, r);
+            let (x, length) = (local(&axes, &at), axes.speed * weight);
+            let e = strains.values(&x);
+            let of = |k: usize| stiffness[k] * e[k] * e[k] * length * 0.5;
+            TurnedSection {
+                length,
+                slope: (x[1] * x[1] + x[2] * x[2]).sqrt(),
+                twist: x[3],
+                energies: [of(0), of(1) + of(2) + of(4) + of(5), of(3)],
+            }
+        })
     }
 }
 
@@ -279,6 +282,21 @@ fn line_row<S: Scalar>(line: &Line<S>, r: f64, gradient: &AtPoint<S>) -> [S; MOS
         }
     }
     row
+}
+
+/// Adds a bᵀ, a sum of which is symmetric.
+fn add_product<S: Scalar>(
+    matrix: &mut ElementMatrix<S>,
+    a: &[S; MOST_UNKNOWNS],
+    b: &[S; MOST_UNKNOWNS],
+) {
+    for i in 0..6 * BEAM_NODES {
+        if a[i] != S::zero() {
+            for j in 0..=i {
+                matrix.rows[i][j] += a[i] * b[j];
+            }
+        }
+    }
 }
 
 /// Adds `factor` b bᵀ.

@@ -1,10 +1,16 @@
 //! The three-node shear-flexible beam, straight or curved, with von Karman's terms.
 //!
 //! ```text
-//! ε = t·w,s + ½ (e2·w,s)² + ½ (e3·w,s)²,  γ2 = e2·w,s − e3·θ,  γ3 = e3·w,s + e2·θ
-//! κ1 = t·θ,s,  κ2 = e2·θ,s,  κ3 = e3·θ,s
+//! ε = t·w,s + ½ (e2·w,s)² + ½ (e3·w,s)² + ½ (I_p/A) (t·θ,s)²
+//! γ = w,s − θ × t − ½ (t·θ) θ,   κ = θ,s − ½ θ × θ,s
 //! U = ½ ∫ [EA ε² + GA2 γ2² + GA3 γ3² + GJ κ1² + EI2 κ2² + EI3 κ3²] ds
 //! ```
+//!
+//! with the components of γ along e2 and e3, and of κ along t, e2 and e3. θ is the vector of rotation R of a section:
+//! γ and κ are those of Reissner (1973) and Simo (1985), w,s less the turned tangent R t − t and the vector of RᵀR,s, to
+//! second order. So moments bend what is twisted and twist what is bent, beams buckle laterally, and any rotation of
+//! a rigid body leaves κ zero. The products are left out where strains are linear. Wagner's term is the stretch of fibres
+//! that a twist makes helices: an axial force N adds N I_p/A to the torsional stiffness (Wagner 1929).
 //!
 //! All strains are taken at two Gauss points, where those of a quadratic element are most exact: the
 //! element does not lock, and its stiffness has the rank 12 that 18 unknowns less 6 rigid motions leave.
@@ -15,6 +21,7 @@ mod frame;
 mod line;
 mod mass;
 mod section;
+mod strain;
 mod torsion;
 
 pub(crate) use element::{Beam, BeamMotion};

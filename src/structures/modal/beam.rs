@@ -9,7 +9,8 @@
 //!
 //! so the shear force GA γ is the slope of the moment EI f''/L² (Timoshenko 1921), and shear costs no
 //! coordinates. a and b put the deflection back where the axes are. The strain of the line of centres is
-//! von Karman's, e = u' + ½ v'² + ½ w'² (derivatives by x).
+//! von Karman's with Wagner's term of the twist, e = u' + ½ v'² + ½ w'² + ½ (I_p/A) φ'² (derivatives by x). Twist and
+//! curvatures of beams that bend in both planes are in [`super::twist`].
 //!
 //! **Companions.** The squares of m slopes of bending are polynomials of degree 2m. With 2m + 1 functions of
 //! stretch u' is any such polynomial, so a bent beam can shorten and stay free of strain. With fewer it locks.
@@ -35,12 +36,12 @@ pub(crate) struct BeamModes {
     pub stretch: usize,
 }
 
-/// Strain of the line of centres.
+/// Strains of a beam.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(crate) enum StrainMeasure {
-    /// e = u' + ½ v'² + ½ w'².
+    /// e = u' + ½ v'² + ½ w'² + ½ (I_p/A) φ'², and twist and curvatures with products of rotations.
     VonKarman,
-    /// e = u': the beam does not stiffen when it is stretched.
+    /// e = u': the beam does not stiffen when it is stretched, and does not buckle.
     Linear,
 }
 
@@ -113,9 +114,9 @@ impl BeamModes {
         self.bending[0] + self.bending[1] + self.torsion + self.stretch
     }
 
-    /// Functions of stretch that keep a beam with these functions of bending from locking.
-    pub(crate) fn companions(bending: [usize; 2]) -> usize {
-        2 * bending[0].max(bending[1]) + 1
+    /// Functions of stretch that keep a beam with these functions of bending and torsion from locking.
+    pub(crate) fn companions(bending: [usize; 2], torsion: usize) -> usize {
+        (2 * bending[0].max(bending[1])).max(2 * torsion.max(1) - 2) + 1
     }
 
     /// The coordinates of each kind: bending along y, along z, torsion, stretch.
@@ -204,16 +205,19 @@ impl<S: Scalar> FlexibleBeam<S> {
     /// The strain of the line of centres.
     pub(super) fn line_strain(&self, modes: &[SectionMode<S>]) -> Quadratic<S> {
         let slopes = |plane: usize| modes.iter().map(|mode| mode.slopes[plane]).collect();
-        let planes = match self.strain {
-            StrainMeasure::VonKarman => 0..2,
-            StrainMeasure::Linear => 0..0,
-        };
+        let mut squares = Vec::new();
+        if self.strain == StrainMeasure::VonKarman {
+            let planes = (0..2).filter(|&plane| self.modes.bending[plane] > 0);
+            squares.extend(planes.map(|plane| (S::one(), slopes(plane))));
+            if self.modes.torsion > 0 {
+                let [ea, _, _, _, ei2, ei3] = self.values().stiffness;
+                let twist = modes.iter().map(|mode| mode.curvature[0]).collect();
+                squares.push(((ei2 + ei3) / ea, twist));
+            }
+        }
         Quadratic {
             linear: modes.iter().map(|mode| mode.stretch).collect(),
-            squares: planes
-                .filter(|&plane| self.modes.bending[plane] > 0)
-                .map(|plane| (S::one(), slopes(plane)))
-                .collect(),
+            squares,
         }
     }
 
@@ -240,7 +244,12 @@ impl<S: Scalar> FlexibleBeam<S> {
         let SectionValues { stiffness, inertia } = self.values();
         let m = self.modes.count();
         let mut sums = Sums::zeros(m);
-        let mut strains = Vec::new();
+        let mut strains = self.twist_strains();
+        // What has strains of its own is no part of K.
+        let [gj, ei2, ei3] = match strains.is_empty() {
+            true => [stiffness[3], stiffness[4], stiffness[5]],
+            false => [S::zero(); 3],
+        };
         for (xi, weight) in self.rule() {
             let xi = S::from(xi);
             let modes = self.section_modes(xi);
@@ -253,13 +262,14 @@ impl<S: Scalar> FlexibleBeam<S> {
                     sums.stiffness[i * m + j] += ds
                         * (stiffness[1] * shears[0] * s2
                             + stiffness[2] * shears[1] * s3
-                            + stiffness[3] * a.curvature[0] * b.curvature[0]
-                            + stiffness[4] * a.curvature[1] * b.curvature[1]
-                            + stiffness[5] * a.curvature[2] * b.curvature[2]);
+                            + gj * a.curvature[0] * b.curvature[0]
+                            + ei2 * a.curvature[1] * b.curvature[1]
+                            + ei3 * a.curvature[2] * b.curvature[2]);
                 }
             }
             strains.push(Strain {
                 weight: stiffness[0] * ds,
+                axial: true,
                 strain: self.line_strain(&modes),
             });
         }

@@ -12,6 +12,7 @@ mod mass_integrals;
 mod second_moments;
 pub(crate) mod sections;
 mod shapes;
+mod twist;
 pub(crate) mod written;
 
 pub(crate) use beam::{BeamDamping, BeamModes, FlexibleBeam, StrainMeasure};

@@ -18,7 +18,7 @@ pub(crate) use emit::{emit_diagonal, emit_jacobian, emit_mass};
 pub(crate) use inertia::{
     first_moment, inertial, moving, pull_back, pull_first_moment, pull_kinetic, weights,
 };
-pub(crate) use orientation::{inside_out, turn};
+pub(crate) use orientation::{inside_out, turned};
 pub(crate) use parts::{of_axial_strains, part_tangent};
 pub(crate) use stiffness::{
     add_forces, diagonal, energy, factors, pull_energy, pull_forces, tangent,

@@ -1,8 +1,11 @@
 //! How far elements are turned: inside out, or relative to the frame of their body.
 
+use super::parts::{all, gather};
+use super::stiffness::split_energy;
 use crate::math::{Scalar, Vec3, scalar::lift3};
 use crate::model::finite::{FiniteElements, ShellElement};
 use crate::structures::shell::basis::{Basis, TABLES};
+use crate::structures::turned::{Turned, at_points, surface_turn, turned_line, turned_shell};
 
 /// Tangents of the surface of an element at a point without deformation, and how displacements change them.
 type Tangents<S> = [[Vec3<S>; 2]; 2];
@@ -43,33 +46,35 @@ pub(crate) fn inside_out<S: Scalar>(finite: &FiniteElements<S>, q: &[S]) -> Opti
     (finite.mesh.elements.iter()).position(|own| TABLES.gauss.iter().any(|g| turned(own, g)))
 }
 
-/// The largest rotation of the surface at a Gauss point of an element \[rad\], to first order in the displacements u,
-/// with the number of the element:
-///
-/// ```text
-/// t = a^r × u,r + a^s × u,s,   θ = t − ½ (n · t) n
-/// ```
-///
-/// a^r and a^s are the reciprocal tangents, n is the normal.
-pub(crate) fn turn<S: Scalar>(finite: &FiniteElements<S>, q: &[S]) -> (f64, usize) {
-    let angle = |own: &ShellElement, basis: &Basis| {
-        let [[r, s], [by_r, by_s]] = tangents(finite, own, q, basis);
-        let normal = r.cross(&s);
-        let square = normal.dot(&normal);
-        let along = [s.cross(&normal), normal.cross(&r)];
-        let turned = (along[0].cross(&by_r) + along[1].cross(&by_s)) * (S::one() / square);
-        let twice = normal * (turned.dot(&normal) / square);
-        let theta = turned - twice * S::from(0.5);
-        theta.dot(&theta).re().sqrt()
-    };
-    let mut most = (0.0, 0);
+/// How far the elements of a body are turned, for values `q` of the unknowns of nodes. Beams come after shells.
+pub(crate) fn turned(finite: &FiniteElements<f64>, q: &[f64]) -> Turned {
+    let mut sum = Turned::default();
     for (i, own) in finite.mesh.elements.iter().enumerate() {
-        for basis in &TABLES.gauss {
-            let own = angle(own, basis);
-            if own > most.0 {
-                most = (own, i);
-            }
+        let squares = at_points(|basis| {
+            let [along, by] = tangents(finite, own, q, basis);
+            surface_turn(&along, &by)
+        });
+        let area = own.shares.iter().flatten().sum();
+        sum.add(i, &turned_shell(area, split_energy(finite, i, q), squares));
+    }
+    let shells = finite.mesh.elements.len();
+    for (i, (part, coordinates)) in all(finite).enumerate() {
+        let own = gather(coordinates, q);
+        for strains in part.stiffness.strains.chunk_by(|_, next| !next.axial) {
+            let of = |k: usize| {
+                let strain = strains.get(k);
+                strain.map_or(0.0, |own_strain| {
+                    0.5 * own_strain.weight * own_strain.strain.value(&own).powi(2)
+                })
+            };
+            let slope = strains
+                .first()
+                .map_or(0.0, |strain| strain.strain.slope(&own));
+            let energies = [of(0), of(1) + of(2) + of(4) + of(5), of(3)];
+            let size = if shells == 0 { 1.0 } else { 0.0 };
+            let part = turned_line(size, [slope * slope, 0.0], energies);
+            sum.add(shells + i, &part);
         }
     }
-    most
+    sum
 }

@@ -30,8 +30,7 @@ pub(super) fn all<S: Scalar>(
     finite.parts.iter().zip(coordinates)
 }
 
-/// A value of each strain of the beams along their axes, by the strain and the coordinates of its part. These strains alone
-/// are quadratic; the others are shears and curvatures.
+/// A value of each strain of the beams along their axes, by the strain and the coordinates of its part.
 pub(crate) fn of_axial_strains<S: Scalar, T>(
     finite: &FiniteElements<S>,
     q: &[S],
@@ -40,9 +39,8 @@ pub(crate) fn of_axial_strains<S: Scalar, T>(
     let mut out = Vec::new();
     for (part, coordinates) in all(finite) {
         let own = gather(coordinates, q);
-        let strains = part.stiffness.strains.iter().map(|own| &own.strain);
-        let along = strains.filter(|strain| !strain.squares.is_empty());
-        out.extend(along.map(|strain| of(strain, &own)));
+        let along = part.stiffness.strains.iter().filter(|own| own.axial);
+        out.extend(along.map(|along| of(&along.strain, &own)));
     }
     out
 }

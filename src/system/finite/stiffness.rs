@@ -184,6 +184,18 @@ fn energies<S: Scalar>(element: &ShellElement, x: &Deformed<S>) -> [S; 2] {
     ]
 }
 
+/// Energies of the membrane of an element, and of its bending and shear \[J\].
+pub(super) fn split_energy(finite: &FiniteElements<f64>, i: usize, q: &[f64]) -> [f64; 2] {
+    let element = &finite.mesh.elements[i];
+    let ([thin, thick], x) = (factors(finite, i), Deformed::of(element, q));
+    let e = Strained::of(element, &x).strain;
+    let [bending, shear] = linear_products(element, &x, &x);
+    [
+        0.5 * thin * dot(&stresses(element, &e), &e),
+        0.5 * (thick * bending + thin * shear),
+    ]
+}
+
 /// The elastic forces of an element.
 fn forces<S: Scalar>(finite: &FiniteElements<S>, i: usize, q: &[S]) -> Local<S> {
     let element = &finite.mesh.elements[i];

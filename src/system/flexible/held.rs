@@ -3,10 +3,12 @@
 use super::coordinates::{add_coordinates, add_part, coordinates};
 use super::form::{elastic_energy, first_moment, moving, pull_first_moment, unlike};
 use super::truncated::{pull_kinetic, weighed};
+use crate::math::slices::dot;
 use crate::math::{Scalar, Vec3};
 use crate::model::Model;
-use crate::model::flexible::{FlexibleBody, Form, Inertia};
+use crate::model::flexible::{BeamSection, FlexibleBody, Form, Inertia};
 use crate::model::shapes::Quadratic;
+use crate::structures::turned::{Turned, turned_line};
 use crate::system::bodies::BodyMotion;
 use crate::system::numbering::Numbering;
 use crate::system::{elastic, finite};
@@ -89,7 +91,8 @@ fn of_axial_strains<S: Scalar, T>(
         (_, Some(own)) => finite::of_axial_strains(own, &unknowns(body, motions), of),
         (Form::Modal(modal), None) => {
             let (strains, q) = (modal.stiffness.strains.iter(), coordinates(body, motions));
-            strains.map(|own| of(&own.strain, &q)).collect()
+            let along = strains.filter(|own| own.axial);
+            along.map(|own| of(&own.strain, &q)).collect()
         }
         (Form::Finite(_), None) => Vec::new(),
     }
@@ -103,19 +106,52 @@ pub(crate) fn axial_strains<S: Scalar>(
     of_axial_strains(body, motions, Quadratic::value)
 }
 
-/// The largest slope of the axes of the beams of a body where they are integrated \[rad\].
-pub(crate) fn axial_slope<S: Scalar>(body: &FlexibleBody<S>, motions: &[BodyMotion<S>]) -> f64 {
-    let slopes = of_axial_strains(body, motions, Quadratic::slope);
-    slopes.into_iter().fold(0.0, f64::max)
+/// How far a body is turned relative to its frame; `None` of bodies from files, whose points have no
+/// surface or line.
+pub(crate) fn turned(body: &FlexibleBody<f64>, motions: &[BodyMotion<f64>]) -> Option<Turned> {
+    if let Some(own) = body.form.shells() {
+        return Some(finite::turned(own, &unknowns(body, motions)));
+    }
+    let Form::Modal(modal) = &body.form else {
+        return None;
+    };
+    let q = coordinates(body, motions);
+    let mut sum = Turned::default();
+    for (i, section) in modal.sections.iter().enumerate() {
+        let square = |row: &Vec<f64>| dot(row, &q).powi(2);
+        let slopes = section.slopes.each_ref().map(square);
+        let (out, twist) = (slopes[0] + slopes[1], square(&section.twist));
+        let quadratic = if section.von_karman { 0.5 * out } else { 0.0 };
+        let [stretch, twisted, bent2, bent3] = std::array::from_fn(|k| {
+            let strain = dot(&section.strains[k], &q) + if k == 0 { quadratic } else { 0.0 };
+            0.5 * section.size * section.stiffness[k] * strain * strain
+        });
+        let energies = [stretch, bent2 + bent3, twisted];
+        sum.add(i, &turned_line(section.size, [out, twist], energies));
+    }
+    (!modal.sections.is_empty()).then_some(sum)
 }
 
-/// The largest rotation of the surface of shells relative to the frame of their body \[rad\], and the element.
-pub(crate) fn turn<S: Scalar>(
-    body: &FlexibleBody<S>,
-    motions: &[BodyMotion<S>],
-) -> Option<(f64, usize)> {
-    let own = body.form.shells()?;
-    Some(finite::turn(own, &unknowns(body, motions)))
+/// The largest bending moment of a beam about its strong axis by that which would buckle it laterally; zero of beams that
+/// can buckle, and of other bodies.
+pub(crate) fn of_lateral_moment(body: &FlexibleBody<f64>, motions: &[BodyMotion<f64>]) -> f64 {
+    let Form::Modal(modal) = &body.form else {
+        return 0.0;
+    };
+    if modal
+        .sections
+        .iter()
+        .all(|section| section.lateral.is_none())
+    {
+        return 0.0;
+    }
+    let q = coordinates(body, motions);
+    let part = |section: &BeamSection| {
+        let (strong, critical) = section.lateral?;
+        let moment = section.stiffness[strong] * dot(&section.strains[strong], &q);
+        Some(moment.abs() / critical)
+    };
+    modal.sections.iter().filter_map(part).fold(0.0, f64::max)
 }
 
 /// The first element of a body of shells that is turned inside out.

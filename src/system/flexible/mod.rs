@@ -15,8 +15,8 @@ pub(crate) use coordinates::{
 pub(crate) use displacement::{MeanSquare, add_displacement, emit_displacement, pull_displacement};
 pub(crate) use form::alone;
 pub(crate) use held::{
-    axial_slope, axial_strains, held, inside_out, pull_energies, pull_momentum, pull_strain_energy,
-    pull_stress_ratios, strain_energy, stress_ratios, turn,
+    axial_strains, held, inside_out, of_lateral_moment, pull_energies, pull_momentum,
+    pull_strain_energy, pull_stress_ratios, strain_energy, stress_ratios, turned,
 };
 
 use super::bodies::{self, BodyMotion};

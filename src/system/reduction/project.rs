@@ -285,6 +285,7 @@ impl ProjectedShells {
                 pairs,
                 elements,
             }),
+            sections: [].into(),
         }
     }
 
@@ -338,9 +339,11 @@ impl ProjectedShells {
         }
         let strains = part.stiffness.strains.iter().map(|own| Strain {
             weight: own.weight,
+            axial: own.axial,
             strain: Quadratic {
                 linear: row(&own.strain.linear),
-                squares: (own.strain.squares.iter())
+                // A basis has nothing that would relieve shears and curvatures of products: they would lock.
+                squares: (own.strain.squares.iter().filter(|_| own.axial))
                     .map(|(c, g)| (*c, row(g)))
                     .collect(),
             },
