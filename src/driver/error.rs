@@ -227,6 +227,7 @@ fn doubled(
             Samples::Uniform((instants / 2).max(1))
         },
         limits: problem.simulation.limits.clone(),
+        derivatives: false,
         memory: 0,
     };
     let mut scene = at.scene.clone();

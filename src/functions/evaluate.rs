@@ -91,7 +91,7 @@ impl Function<Complex64> {
             Reduction::Final => 0.0,
             Reduction::Integral => {
                 let duration = run.time(run.last()).re;
-                let weight = |k| duration * run.quadrature_weight(k);
+                let weight = |k| duration * run.quadrature_weight(k).re;
                 sum(&weight, &sample(instant, &turns, model, run))
             }
             Reduction::Ks { rho, .. } | Reduction::InducedExponential { rho } => {
