@@ -19,4 +19,5 @@ mod shell_derivatives;
 mod shell_element;
 mod shell_plate;
 mod sizes;
+mod supports;
 mod von_karman;
