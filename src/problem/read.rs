@@ -6,6 +6,7 @@ use super::elements;
 use super::fault::Faults;
 use super::finding::{Finding, Part};
 use super::first_scene::{collapsed, driven_twice, oblique, too_many, unassembled, unstarted};
+use super::holds;
 use super::modal;
 use super::overrides::Override;
 use super::placement::placement_order;
@@ -284,14 +285,17 @@ fn twice(duplicate: &Duplicate) -> Finding {
 
 /// Deserialises a document.
 fn deserialise(document: &Value) -> Result<Document, Finding> {
-    serde_path_to_error::deserialize(document).map_err(|error| {
+    let read = serde_path_to_error::deserialize(document);
+    let mut written: Document = read.map_err(|error| {
         let pointer: String = error
             .path()
             .iter()
             .map(|segment| join("", segment))
             .collect();
         Finding::new(pointer, error.inner().to_string(), "what the schema says")
-    })
+    })?;
+    holds::find_welds(&mut written);
+    Ok(written)
 }
 
 /// The problem of a checked document.

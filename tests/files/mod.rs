@@ -15,6 +15,7 @@ mod faults;
 pub mod finite_elements;
 mod flexible_families;
 mod flexible_scenes;
+mod held_edges;
 mod layers;
 mod modal;
 mod modal_faults;
