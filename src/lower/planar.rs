@@ -246,7 +246,8 @@ impl Plane {
             Sliding { a } => across(0, a),
             Distance => false,
         };
-        joint.all_rows().filter(trivial_rows).collect()
+        let left_out = |row: &ConstraintRow| trivial_rows(row) || joint.trivial_rows.contains(row);
+        joint.all_rows().filter(left_out).collect()
     }
 
     pub(super) fn frames<S: Scalar>(&self, joint: &Joint<S>, j: usize) -> [JointFrame<S>; 2] {

@@ -150,6 +150,30 @@ impl<S: Scalar> Model<S> {
         self.flexible.len() - 1
     }
 
+    /// Adds an interface of flexible body `flexible` at a place X of the undeformed body that all of some nodes
+    /// follow, and the joints that hold it to each: the index of the body. Each joint has its frame at the
+    /// node, in axes of the body, and the rows that it leaves out.
+    pub(crate) fn tie(
+        &mut self,
+        flexible: usize,
+        name: &str,
+        point: Vec3<S>,
+        nodes: Vec<(JointFrame<S>, Modes<S>, Vec<ConstraintRow>)>,
+    ) -> usize {
+        let still = (Vec::new(), Vec::new());
+        let joint = self.interface(flexible, name, point, still, Some(&[]));
+        for (frame, modes, trivial_rows) in nodes {
+            let mut own = joint.clone();
+            own.frame_a = frame;
+            own.frame_b = frame;
+            own.frame_b.point = frame.point - point;
+            own.modes = Some(modes);
+            own.trivial_rows = trivial_rows;
+            self.joints.push(own);
+        }
+        self.bodies.len() - 1
+    }
+
     /// Adds the interface of a point X of flexible body `flexible` with the displacements N_I and the
     /// rotations Θ_I there, by the coordinates of `indices` or by all of them, and the joint that holds it:
     /// the index of the body. It starts where the deformed point does, its axes turned by the section.
@@ -158,9 +182,23 @@ impl<S: Scalar> Model<S> {
         flexible: usize,
         name: &str,
         point: Vec3<S>,
-        (displacement, rotation): (Vec<Vec3<S>>, Vec<Vec3<S>>),
+        modes: (Vec<Vec3<S>>, Vec<Vec3<S>>),
         indices: Option<&[usize]>,
     ) -> usize {
+        let joint = self.interface(flexible, name, point, modes, indices);
+        self.joints.push(joint);
+        self.bodies.len() - 1
+    }
+
+    /// Adds the body of [`Model::attach`]; gives the joint that holds it.
+    fn interface(
+        &mut self,
+        flexible: usize,
+        name: &str,
+        point: Vec3<S>,
+        (displacement, rotation): (Vec<Vec3<S>>, Vec<Vec3<S>>),
+        indices: Option<&[usize]>,
+    ) -> Joint<S> {
         let body = &self.flexible[flexible];
         let frame = body.frame;
         let places: Vec<(usize, usize)> = match indices {
@@ -197,7 +235,7 @@ impl<S: Scalar> Model<S> {
             length: S::zero(),
         };
         self.bodies.push(interface);
-        self.joints.push(Joint {
+        Joint {
             name: self.bodies[self.bodies.len() - 1].name.clone(),
             kind: JointKind::Attachment,
             body_a: frame,
@@ -212,7 +250,6 @@ impl<S: Scalar> Model<S> {
                 displacement,
                 rotation,
             }),
-        });
-        self.bodies.len() - 1
+        }
     }
 }

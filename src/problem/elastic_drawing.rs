@@ -1,10 +1,10 @@
 //! Drawing of bodies that deform: their outlines, and displacements of their points.
 
-use super::elements::{nodes_of, prepared};
+use super::elements::prepared;
 use super::fibres::SLICES;
+use super::holds::nodes_of;
 use super::placement::{Assembly, split_location};
 use super::schema::Document;
-use super::schema::elements::Held;
 use super::schema::modal::Modal;
 use crate::math::Vec3;
 use crate::model::finite::{ElementMesh, NODES, ShellElement};
@@ -145,7 +145,7 @@ pub(super) fn shell_points(document: &Document) -> Vec<ElasticPoint> {
         };
         let known = prepared(document, elements);
         for (point, held) in &elements.points {
-            let (Held::Node(set) | Held::Edge(set)) = held;
+            let set = held.set();
             let nodes = nodes_of(&known.sets, set).unwrap_or_default();
             let mesh = &known.mesh;
             let of = |element: &ShellElement| {

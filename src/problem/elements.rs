@@ -1,5 +1,6 @@
 //! From the elements of a body in a file to their coordinates and points.
 
+use super::holds::{self, nodes_of};
 use super::parts;
 use super::prepared::Prepared;
 use super::quantity::Quantity;
@@ -12,19 +13,13 @@ use super::statics::properties::{slots, thickness};
 use crate::math::{Scalar, Vec3};
 use crate::model::finite::FiniteElements;
 use crate::structures::beam::{Section, SectionValues};
-use crate::structures::floating::{FrameNodes, element_mesh};
+use crate::structures::floating::{FrameNodes, NodeMotion, element_mesh};
 use crate::structures::material::Material;
 use crate::structures::mesh::Mesh;
 use crate::structures::modes::PencilFailure;
 use crate::structures::parts::coordinates;
 use crate::structures::structure::{Structure, Topology};
 use std::sync::Arc;
-
-/// The nodes of a set of nodes or of an edge.
-pub(crate) fn nodes_of(mesh: &Mesh, set: &str) -> Option<Vec<usize>> {
-    let nodes = mesh.node_sets.get(set).cloned();
-    nodes.or_else(|| mesh.edge_sets.get(set).map(|edges| edges.concat()))
-}
 
 /// The nodes that hold the axes; `None` if a set is missing.
 pub(crate) fn frame_nodes(mesh: &Mesh, frame: &ElementFrame) -> Option<FrameNodes> {
@@ -140,7 +135,8 @@ pub(crate) fn prepare(
                 yield_stress: value(material.and_then(|material| material.yield_stress), 1.0),
             }],
         };
-        let frame = frame_nodes(&part.mesh, &elements.frame).expect(CHECKED);
+        let given = frame_nodes(&part.mesh, &elements.frame).expect(CHECKED);
+        let frame = holds::axes(elements, given, (&part.mesh, &structure.nodes));
         let (mut mesh, surface) = element_mesh(&structure, &frame).expect(CHECKED);
         let written_parts = parts::written(written, (beams, &structure), &surface, |set| {
             part.mesh.node_sets.get(set).cloned().unwrap_or_default()
@@ -149,14 +145,30 @@ pub(crate) fn prepare(
         mesh.parts = all.map(|own| coordinates(&own.nodes)).collect();
         let motion = |held: &Held| match held {
             Held::Node(set) => surface.node(nodes_of(&part.mesh, set).expect(CHECKED)[0]),
-            Held::Edge(set) => surface.edge(&part.mesh.edge_sets[set]),
+            Held::Edge(set) | Held::Rigid(set) | Held::Mean(set) => {
+                surface.edge(&part.mesh.edge_sets[set])
+            }
         };
+        let ties = elements.points.iter().filter_map(|(name, held)| {
+            if !holds::is_rigid(elements, name) {
+                return None;
+            }
+            let mut nodes = nodes_of(&part.mesh, held.set())?;
+            nodes.sort_unstable();
+            nodes.dedup();
+            let nodes = nodes.into_iter().map(|node| surface.unknowns(node));
+            let nodes: Vec<NodeMotion> = nodes.collect();
+            // A clamped edge follows already.
+            let moves = |own: &NodeMotion| own.displacements.iter().any(Option::is_some);
+            nodes.iter().any(moves).then(|| (name.clone(), nodes))
+        });
         let points = elements.points.iter();
         Prepared {
             mesh: Arc::new(mesh),
             points: points
                 .map(|(name, held)| (name.clone(), motion(held)))
                 .collect(),
+            ties: ties.collect(),
             slots,
             parts: written_parts,
             sets: part.mesh,

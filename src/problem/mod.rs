@@ -19,6 +19,7 @@ mod flexible;
 mod focus;
 mod functions;
 mod hinge;
+mod holds;
 mod joints;
 mod loads;
 mod mass;

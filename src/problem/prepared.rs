@@ -21,6 +21,9 @@ pub(crate) struct Prepared {
     pub parts: Vec<WrittenPart>,
     /// The named points, by the coordinates of the body.
     pub points: IndexMap<String, PointMotion>,
+    /// The nodes of each point all of whose nodes follow, as unknowns of the body; none if the vectors of a basis
+    /// follow.
+    pub ties: IndexMap<String, Vec<NodeMotion>>,
     /// The basis, if coordinates are not all unknowns of the nodes.
     pub reduced: Option<ReducedBody>,
 }

@@ -6,6 +6,7 @@ use super::elements;
 use super::fault::Faults;
 use super::finding::{Finding, Part};
 use super::first_scene::{collapsed, driven_twice, oblique, too_many, unassembled, unstarted};
+use super::holds;
 use super::modal;
 use super::overrides::Override;
 use super::placement::placement_order;
@@ -202,6 +203,24 @@ fn of_structures(problem: &mut Problem) -> Result<(), Vec<Finding>> {
     if !unsupported.is_empty() {
         return Err(unsupported);
     }
+    if let Some((case, load, at)) = statics.moment_along_normal(&problem.written, &start) {
+        let cases = &problem.written.load_cases;
+        let named = cases.get_index(case).and_then(|(name, loads)| {
+            let (load, _) = loads.get_index(load)?;
+            Some(join(&join("/load_cases", name), load))
+        });
+        let pointer = join(&join(&named.unwrap_or_default(), "point"), "moment");
+        let found = format!(
+            "a moment with a part along the normal of the shell at ({:.4}, {:.4}, {:.4}) m",
+            at.x, at.y, at.z
+        );
+        let expected = "moments about tangents, as nodes have no rotation about the normal";
+        let hint =
+            "\"statics\": {\"node_unknowns\": \"six\"} gives them one, with a small stiffness";
+        return Err(vec![
+            Finding::new(pointer, found, expected).hint(Some(hint.into())),
+        ]);
+    }
     if let Some((name, failure)) = statics.mechanism(&problem.written, &start) {
         let pointer = join("/structures", &name);
         let expected = "supports that hold every part of it";
@@ -269,14 +288,17 @@ fn twice(duplicate: &Duplicate) -> Finding {
 
 /// Deserialises a document.
 fn deserialise(document: &Value) -> Result<Document, Finding> {
-    serde_path_to_error::deserialize(document).map_err(|error| {
+    let read = serde_path_to_error::deserialize(document);
+    let mut written: Document = read.map_err(|error| {
         let pointer: String = error
             .path()
             .iter()
             .map(|segment| join("", segment))
             .collect();
         Finding::new(pointer, error.inner().to_string(), "what the schema says")
-    })
+    })?;
+    holds::find_welds(&mut written);
+    Ok(written)
 }
 
 /// The problem of a checked document.

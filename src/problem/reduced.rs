@@ -6,10 +6,11 @@ use super::schema::Document;
 use super::schema::elements::{ElementBasis, ReducedKeys};
 use super::schema::mechanics::Body;
 use crate::model::finite::{ElementMesh, FiniteElements};
-use crate::structures::floating::PointMotion;
+use crate::structures::floating::{NodeMotion, PointMotion};
 use crate::structures::modes::PencilFailure;
-use crate::system::reduction::{ModeChoice, ReducedBasis, Request, project, reduced_basis};
+use crate::system::reduction::{ModeChoice, ReducedBasis, Request, Tie, project, reduced_basis};
 use serde_json::json;
+use std::collections::BTreeMap;
 use std::sync::OnceLock;
 
 /// Fixed-interface modes where a file gives no number.
@@ -123,6 +124,8 @@ pub(super) fn reduce(
     for point in prepared.points.values_mut() {
         *point = shells.point(point);
     }
+    // The vectors follow already.
+    prepared.ties.clear();
     prepared.reduced = Some(ReducedBody { shells, basis });
     Ok(())
 }
@@ -138,5 +141,40 @@ fn make(
         Some(interfaces) => interfaces.contains(name),
     });
     let points: Vec<&PointMotion> = points.map(|(_, point)| point).collect();
-    reduced_basis(of_file, &points, &request(keys, &prepared.mesh))
+    let ties = prepared.ties.iter();
+    let ties: Vec<Tie> = ties
+        .map(|(name, nodes)| tie(nodes, &prepared.points[name]))
+        .collect();
+    reduced_basis(of_file, &points, &ties, &request(keys, &prepared.mesh))
+}
+
+/// The rows that vanish where the nodes of an edge follow its average.
+fn tie(nodes: &[NodeMotion], average: &PointMotion) -> Tie {
+    let motions = || {
+        let all = average.displacement.iter().zip(&average.rotation);
+        average.coordinates.iter().zip(all)
+    };
+    let mut rows = Vec::new();
+    for node in nodes {
+        let arm = node.place - average.place;
+        for (k, own) in node.displacements.iter().enumerate() {
+            let follows = motions().map(|(&i, (u, turn))| (i, -(u + turn.cross(&arm))[k]));
+            rows.push(joined(own.map(|i| (i, 1.0)).into_iter().chain(follows)));
+        }
+        for (own, axis) in &node.rotations {
+            let size = axis.norm();
+            let follows = motions().map(|(&i, (_, turn))| (i, -turn.dot(axis) / size));
+            rows.push(joined(std::iter::once((*own, size)).chain(follows)));
+        }
+    }
+    rows
+}
+
+/// A row with one entry for each unknown that it has.
+fn joined(entries: impl Iterator<Item = (usize, f64)>) -> Vec<(usize, f64)> {
+    let mut sums = BTreeMap::new();
+    for (i, x) in entries {
+        *sums.entry(i).or_insert(0.0) += x;
+    }
+    sums.into_iter().filter(|(_, x)| *x != 0.0).collect()
 }

@@ -6,7 +6,7 @@ use super::mesh::{Mesh, UnknownSet};
 use super::shell::basis::TABLES;
 use super::state::Configuration;
 use super::structure::Structure;
-use super::supports::{NodeUnknowns, Rotations, Support};
+use super::supports::{NodeUnknowns, Rotations, Support, Tangents};
 use crate::math::{Mat3, Scalar, Vec3};
 use crate::model::element_operators::{Columns, Symmetric};
 use crate::model::finite::{
@@ -216,7 +216,7 @@ fn turns(configuration: &Configuration<f64>, nodes: &[usize; NODES]) -> Vec<Rota
     let mut all = Vec::new();
     for (node, &at) in nodes.iter().enumerate() {
         match configuration.unknowns.nodes[at].rotations {
-            Rotations::Global([true, true, true]) | Rotations::Tangents(_) => {}
+            Rotations::Global([true, true, true]) | Rotations::Smooth(Tangents::Both(_), _) => {}
             _ => return Vec::new(),
         }
         let (axes, count) = configuration.axes(at);

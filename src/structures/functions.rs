@@ -285,8 +285,7 @@ impl Solved<'_, f64> {
             Function::Reaction { .. } | Function::ReactionMoment { .. } => {
                 let reaction = reaction(function);
                 let state = self.state(reaction.case);
-                let to = &mut all.to.structure.nodes;
-                let psi = reaction.add_transpose(configuration, &state, to)?;
+                let psi = reaction.add_transpose(configuration, &state, &mut all.to)?;
                 all.virtual_motions[reaction.case] = Some(psi);
             }
             Function::StrainEnergy { case } => add_energy_transpose(

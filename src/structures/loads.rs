@@ -5,6 +5,7 @@
 
 use super::beam::BeamMotion;
 use super::mesh::UnknownSet;
+use super::normal_moment;
 use super::shell::Motion;
 use super::shell::basis::{GAUSS_POINTS, TABLES};
 use super::state::{Configuration, Cotangent, NodalMotion};
@@ -20,7 +21,8 @@ pub enum Load<S> {
         nodes: String,
         /// Force on each node.
         force: Vec3<S>,
-        /// Moment on each node. On a smooth surface its part about the director does no work.
+        /// Moment on each node. Where a node has no unknown rotation about its director, the part along it
+        /// turns the surface.
         moment: Vec3<S>,
     },
     /// A force per length on edges [N/m].
@@ -156,9 +158,14 @@ pub(crate) fn add_work_transpose<S: Scalar>(
         ) => {
             for &node in mesh.node_set(nodes)? {
                 force.displacement[node] += f;
-                force.rotation[node] += m;
                 *f_to += motion.displacement[node];
-                *m_to += motion.rotation[node];
+                if let Some(director) = configuration.surface_director(node) {
+                    let at = (node, director);
+                    *m_to += normal_moment::add_transpose(configuration, at, m, motion, force, to);
+                } else {
+                    force.rotation[node] += m;
+                    *m_to += motion.rotation[node];
+                }
             }
         }
         (Load::Edge { edges, force: f }, Load::Edge { force: f_to, .. }) => {

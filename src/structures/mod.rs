@@ -19,6 +19,7 @@ pub mod material;
 pub mod mesh;
 pub(crate) mod modal;
 pub mod modes;
+pub(crate) mod normal_moment;
 pub(crate) mod parts;
 pub mod properties;
 pub mod quality;

@@ -9,7 +9,7 @@ use super::assembly::{Assembly, add_energy_transpose};
 use super::loads::{Load, add_work_transpose};
 use super::mesh::UnknownSet;
 use super::shell::Terms;
-use super::state::{Configuration, NodalMotion};
+use super::state::{Configuration, Cotangent, NodalMotion};
 use super::structure::Structure;
 use crate::math::{Dual, Scalar, Vec3};
 
@@ -83,17 +83,38 @@ impl Reaction<'_> {
         Ok(sum)
     }
 
-    /// Adds to the cotangent of the nodes that ψ moves with them; gives ψ for the adjoint product.
+    /// Adds to the cotangent of the structure that ψ moves with its nodes and directors; gives ψ for the adjoint
+    /// product. At nodes outside the set the forces that ψ works with are in equilibrium, but the moments of
+    /// what holds a rotation there are not zero.
     pub(crate) fn add_transpose(
         &self,
         configuration: &Configuration<f64>,
         state: &State<f64>,
-        to: &mut [Vec3<f64>],
+        to: &mut Cotangent<f64>,
     ) -> Result<NodalMotion<f64>, UnknownSet> {
         let (internal, external) = forces(configuration, state)?;
+        let mut inside = vec![false; internal.displacement.len()];
         for &node in configuration.structure.topology.mesh.node_set(self.nodes)? {
             let force = internal.displacement[node] - external.displacement[node];
-            to[node] += force.cross(&self.moment);
+            to.structure.nodes[node] += force.cross(&self.moment);
+            inside[node] = true;
+        }
+        for node in (0..inside.len()).filter(|&node| !inside[node]) {
+            let Some(d) = configuration.smooth_director(node) else {
+                continue;
+            };
+            let held = internal.rotation[node] - external.rotation[node];
+            let (axes, count) = configuration.axes(node);
+            let mut bars = [Vec3::zeros(); 3];
+            // Of a (a·m) / (a·a), times the held moment.
+            for (bar, a) in bars.iter_mut().zip(&axes[..count]) {
+                let (square, by_m, by_held) = (a.norm_squared(), a.dot(&self.moment), a.dot(&held));
+                *bar = (held * by_m + self.moment * by_held) / square
+                    - a * (2.0 * by_m * by_held / (square * square));
+            }
+            let at = configuration.structure.topology.sheets.of_node[node].start;
+            let rotations = configuration.unknowns.nodes[node].rotations;
+            to.directors[at] += rotations.axes_transpose(d, &bars);
         }
         self.virtual_motion(configuration)
     }

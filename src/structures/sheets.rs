@@ -70,6 +70,22 @@ impl Sheets {
         all
     }
 
+    /// The largest angle at each node by which an element there turns from the normal at it to that at another of
+    /// its nodes \[rad\].
+    pub(crate) fn turns(&self, mesh: &Mesh, nodes: &[Vec3<f64>]) -> Vec<f64> {
+        let mut all: Vec<f64> = vec![0.0; mesh.nodes];
+        for element in &mesh.shells {
+            let normals: [Vec3<f64>; NODES] =
+                std::array::from_fn(|local| normal(&corner_tangents(element, local, nodes)));
+            for (&node, own) in element.iter().zip(&normals) {
+                for other in &normals {
+                    all[node] = all[node].max(own.cross(other).norm().atan2(own.dot(other)));
+                }
+            }
+        }
+        all
+    }
+
     /// Transpose of the derivative of [`Sheets::directors`].
     pub(crate) fn add_directors_transpose<S: Scalar>(
         &self,
@@ -100,14 +116,14 @@ impl Sheets {
 }
 
 /// Transpose of the derivative of v / |v|.
-fn unit_transpose<S: Scalar>(v: &Vec3<S>, bar: &Vec3<S>) -> Vec3<S> {
+pub(super) fn unit_transpose<S: Scalar>(v: &Vec3<S>, bar: &Vec3<S>) -> Vec3<S> {
     let size = length(v);
     let unit = v / size;
     (bar - unit * unit.dot(bar)) / size
 }
 
 /// Tangents of an element at one of its nodes.
-fn corner_tangents<S: Scalar>(
+pub(super) fn corner_tangents<S: Scalar>(
     element: &[usize; NODES],
     local: usize,
     nodes: &[Vec3<S>],
@@ -124,7 +140,7 @@ fn corner_tangents<S: Scalar>(
     tangents
 }
 
-fn normal<S: Scalar>([r, s]: &[Vec3<S>; 2]) -> Vec3<S> {
+pub(super) fn normal<S: Scalar>([r, s]: &[Vec3<S>; 2]) -> Vec3<S> {
     let n = r.cross(s);
     n / length(&n)
 }

@@ -2,7 +2,7 @@
 
 use super::shell::{Field, Motion, NODES, RotationAxes, Shell, ShellCotangent, Terms};
 use super::structure::Structure;
-use super::supports::{NodeUnknowns, Unknowns};
+use super::supports::{NodeUnknowns, Normal, Rotations, Unknowns};
 use crate::math::{Dual, Scalar, Vec3};
 
 /// Displacements [m] and rotations [rad] of the nodes in global axes; or forces [N] and moments [N m].
@@ -169,6 +169,16 @@ impl<'a, S: Scalar> Configuration<'a, S> {
         (range.len() == 1).then(|| &self.directors[range.start])
     }
 
+    /// The director of a node whose rotation about it is that of the surface.
+    pub(crate) fn surface_director(&self, node: usize) -> Option<usize> {
+        match self.unknowns.nodes[node].rotations {
+            Rotations::Smooth(_, Normal::Surface) => {
+                Some(self.structure.topology.sheets.of_node[node].start)
+            }
+            Rotations::Smooth(..) | Rotations::Global(_) => None,
+        }
+    }
+
     /// The axes of the unknown rotations of a node.
     pub(crate) fn axes(&self, node: usize) -> ([Vec3<S>; 3], usize) {
         self.unknowns.nodes[node]
@@ -227,7 +237,11 @@ impl<'a, S: Scalar> Configuration<'a, S> {
                 let phi = &x[at.first_rotation..at.first_rotation + count];
                 let at_director =
                     &mut directors[self.structure.topology.sheets.of_node[node].start];
-                *at_director += at.rotations.director_transpose(d, phi, moment);
+                let mut bars = [Vec3::zeros(); 3];
+                for (bar, &phi) in bars.iter_mut().zip(phi) {
+                    *bar = moment * phi;
+                }
+                *at_director += at.rotations.axes_transpose(d, &bars);
             }
         }
     }

@@ -1,23 +1,38 @@
 //! Supports, and the unknowns that they leave to the nodes.
 //!
 //! A node on a smooth surface has two unknown rotations, about tangents; a node on a fold or a
-//! beam, or any node if six unknowns are requested, three about the global axes. A support fixes
-//! displacements and rotations in the global axes. The rotation about a director has no unknown on
-//! a smooth surface, so a fixed axis f within 0.1 rad of the director D fixes nothing there; else
+//! beam three about the global axes. If six unknowns are requested, a node on a smooth surface also has
+//! one about its director D. A support fixes displacements and rotations in the global axes.
 //!
-//! | fixed axes | unknown rotations |
-//! |---|---|
-//! | none | t1 = D × e, t2 = D × t1 (e: the global axis least along D) |
-//! | f | D × f |
-//! | two | about the third axis x, if it is not within 0.1 rad of D |
-//! | three | none |
+//! The surface holds the rotation about D to its own, so a fixed axis f of a smooth node fixes the
+//! rotation about P f, its projection on the tangent plane: a structure that is turned with its supports
+//! stays the same, and what is fixed in addition makes it no softer. With s the sine below which an axis
+//! counts as along D (see [`along_director`]):
+//!
+//! | fixed axes | unknown rotations about tangents | about D |
+//! |---|---|---|
+//! | none | t1 = D × e, t2 = D × t1 (e: the global axis least along D) | free |
+//! | f, \|P f\| > s | D × f | free |
+//! | f, \|P f\| ≤ s | t1, t2 | fixed |
+//! | two, of which x is the third axis, \|D·x\| > s | none | free |
+//! | two, \|D·x\| ≤ s | D × f, f the one farther from D | fixed |
+//! | three | none | fixed |
 
 use super::mesh::UnknownSet;
 use super::structure::Structure;
 use crate::math::{Scalar, Vec3};
 
-/// Sine of the angle below which an axis counts as that of the director.
-const ALONG_DIRECTOR: f64 = 0.1;
+/// How well the axes of an input are known \[rad\].
+const ROUNDED: f64 = 1e-5;
+/// How well directors are known, as a part of the square of the angle that an element turns by. At the edge
+/// of a circular arc of elements of angle β they err by β³/32.
+const OF_TURN: f64 = 0.1;
+
+/// Sine of the angle below which an axis counts as along a director: where a surface ends at a plane of
+/// symmetry, its director lies in this plane only but for the error of the interpolated surface.
+pub(super) fn along_director(turn: f64) -> f64 {
+    ROUNDED + OF_TURN * turn * turn
+}
 
 /// A support of the nodes of a set.
 #[derive(Clone, Debug, PartialEq)]
@@ -60,57 +75,95 @@ pub enum NodeUnknowns {
 pub(crate) enum Rotations {
     /// About these global axes.
     Global([bool; 3]),
+    /// Those of a node on a smooth surface.
+    Smooth(Tangents, Normal),
+}
+
+/// The unknown rotations of a smooth node about tangents.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(crate) enum Tangents {
     /// About t1 = D × e and t2 = D × t1, e a global axis.
-    Tangents(usize),
+    Both(usize),
     /// About D × e.
     Across(usize),
+    /// None.
+    Fixed,
+}
+
+/// What holds the rotation of a smooth node about its director.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(crate) enum Normal {
+    /// A support.
+    Fixed,
+    /// It is that of the surface.
+    Surface,
+    /// It is an unknown, with a stiffness against that of the surface.
+    Unknown,
 }
 
 impl Rotations {
     fn count(self) -> usize {
         match self {
             Self::Global(free) => free.into_iter().filter(|&free| free).count(),
-            Self::Tangents(_) => 2,
-            Self::Across(_) => 1,
+            Self::Smooth(tangents, normal) => {
+                tangents.count() + usize::from(normal == Normal::Unknown)
+            }
         }
     }
 
-    /// The axes, and how many there are.
+    /// The axes, which are orthogonal, and how many there are.
     pub(crate) fn axes<S: Scalar>(self, director: Option<&Vec3<S>>) -> ([Vec3<S>; 3], usize) {
         let mut axes = [Vec3::zeros(); 3];
-        let d = director.copied().unwrap_or_else(Vec3::zeros);
         match self {
             Self::Global(free) => {
                 for (axis, k) in axes.iter_mut().zip((0..3).filter(|&k| free[k])) {
                     *axis = unit(k);
                 }
             }
-            Self::Tangents(k) => {
-                axes[0] = d.cross(&unit(k));
-                axes[1] = d.cross(&axes[0]);
+            Self::Smooth(tangents, normal) => {
+                let d = director.copied().unwrap_or_else(Vec3::zeros);
+                match tangents {
+                    Tangents::Both(k) => {
+                        axes[0] = d.cross(&unit(k));
+                        axes[1] = d.cross(&axes[0]);
+                    }
+                    Tangents::Across(k) => axes[0] = d.cross(&unit(k)),
+                    Tangents::Fixed => {}
+                }
+                if normal == Normal::Unknown {
+                    axes[tangents.count()] = d;
+                }
             }
-            Self::Across(k) => axes[0] = d.cross(&unit(k)),
         }
         (axes, self.count())
     }
 
-    /// Transpose of the derivative of Σ axis_k φ_k by the director, for the cotangent `bar`.
-    pub(crate) fn director_transpose<S: Scalar>(
-        self,
-        d: &Vec3<S>,
-        phi: &[S],
-        bar: &Vec3<S>,
-    ) -> Vec3<S> {
-        match self {
-            Self::Global(_) => Vec3::zeros(),
-            Self::Tangents(k) => {
+    /// Transpose of the derivative of [`Rotations::axes`] by the director.
+    pub(crate) fn axes_transpose<S: Scalar>(self, d: &Vec3<S>, bars: &[Vec3<S>; 3]) -> Vec3<S> {
+        let Self::Smooth(tangents, normal) = self else {
+            return Vec3::zeros();
+        };
+        let by_tangents = match tangents {
+            Tangents::Both(k) => {
                 let e = unit(k);
-                let second = bar * phi[1];
-                // θ = (D × e) φ1 + D × (D × e) φ2.
-                let first = bar * phi[0] + second.cross(d);
-                e.cross(&first) + d.cross(&e).cross(&second)
+                e.cross(&(bars[0] + bars[1].cross(d))) + d.cross(&e).cross(&bars[1])
             }
-            Self::Across(k) => unit(k).cross(&(bar * phi[0])),
+            Tangents::Across(k) => unit(k).cross(&bars[0]),
+            Tangents::Fixed => Vec3::zeros(),
+        };
+        match normal {
+            Normal::Unknown => by_tangents + bars[tangents.count()],
+            Normal::Fixed | Normal::Surface => by_tangents,
+        }
+    }
+}
+
+impl Tangents {
+    fn count(self) -> usize {
+        match self {
+            Self::Both(_) => 2,
+            Self::Across(_) => 1,
+            Self::Fixed => 0,
         }
     }
 }
@@ -162,6 +215,7 @@ impl Unknowns {
         }
         let on_beams = topology.mesh.on_beams();
         let directors = topology.sheets.directors(&topology.mesh, &structure.nodes);
+        let turns = topology.sheets.turns(&topology.mesh, &structure.nodes);
         let mut all = Self {
             nodes: vec![
                 AtNode {
@@ -184,10 +238,16 @@ impl Unknowns {
                 }
             }
             let smooth_here = sheets.len() == 1 && !on_beams[node];
-            at.rotations = if smooth_here && node_unknowns == NodeUnknowns::Natural {
-                smooth(&directors[sheets.start], rotations)
-            } else {
-                Rotations::Global(rotations.map(|fixed| !fixed))
+            let free = match node_unknowns {
+                NodeUnknowns::Natural => Normal::Surface,
+                NodeUnknowns::Six => Normal::Unknown,
+            };
+            at.rotations = match smooth_here {
+                true => {
+                    let along = along_director(turns[node]);
+                    smooth(&directors[sheets.start], along, rotations, free)
+                }
+                false => Rotations::Global(rotations.map(|fixed| !fixed)),
             };
             at.first_rotation = all.count;
             all.count += at.rotations.count();
@@ -196,19 +256,21 @@ impl Unknowns {
     }
 }
 
-/// The rotations of a node on a smooth surface.
-fn smooth(director: &Vec3<f64>, fixed: [bool; 3]) -> Rotations {
-    let across = |k: usize| director.cross(&unit(k)).norm();
-    let count = fixed.into_iter().filter(|&fixed| fixed).count();
+/// The rotations of a node on a smooth surface; `free` is what holds that about the director if no support
+/// does.
+fn smooth(director: &Vec3<f64>, along: f64, fixed: [bool; 3], free: Normal) -> Rotations {
+    let off_director = |k: usize| director.cross(&unit(k)).norm();
     let least = (0..3).min_by(|&a, &b| director[a].abs().total_cmp(&director[b].abs()));
-    let tangents = Rotations::Tangents(least.unwrap_or(0));
-    let none = Rotations::Global([false; 3]);
-    let only = |value: bool| (0..3).find(|&k| fixed[k] == value).unwrap_or(0);
-    match count {
-        0 => tangents,
-        1 if across(only(true)) > ALONG_DIRECTOR => Rotations::Across(only(true)),
-        1 => tangents,
-        2 if across(only(false)) > ALONG_DIRECTOR => Rotations::Global(fixed.map(|fixed| !fixed)),
-        _ => none,
-    }
+    let both = Tangents::Both(least.unwrap_or(0));
+    let axes: Vec<usize> = (0..3).filter(|&k| fixed[k]).collect();
+    let (tangents, normal) = match axes[..] {
+        [] => (both, free),
+        [k] if off_director(k) > along => (Tangents::Across(k), free),
+        [_] => (both, Normal::Fixed),
+        [a, b] if director[3 - a - b].abs() > along => (Tangents::Fixed, free),
+        [a, b] if off_director(a) >= off_director(b) => (Tangents::Across(a), Normal::Fixed),
+        [_, b] => (Tangents::Across(b), Normal::Fixed),
+        _ => (Tangents::Fixed, Normal::Fixed),
+    };
+    Rotations::Smooth(tangents, normal)
 }

@@ -19,6 +19,7 @@ mod flexible_families;
 mod flexible_scenes;
 mod last_modes;
 mod lateral;
+mod held_edges;
 mod layers;
 mod modal;
 mod modal_faults;

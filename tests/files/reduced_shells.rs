@@ -255,7 +255,11 @@ fn bases_that_lock_are_told() {
     });
     let radau = json!({"radau": {"stages": 2}});
     let bent = |mesh: &Value, axes: Value, basis: Value, method: &Value| {
-        let document = cantilever((mesh, &axes), &basis, (method, "equilibrium"));
+        let mut document = cantilever((mesh, &axes), &basis, (method, "equilibrium"));
+        if axes.get("chord").is_some() {
+            // With a rigid edge the axes would be clamped there.
+            document["bodies"]["plate"]["elements"]["points"]["root"] = json!({"mean": "x0"});
+        }
         let problem = parsed(&document);
         let motion = simulate(&problem, &problem.start()).expect("a motion");
         (values(&document)[1], motion.warning.unwrap_or_default())

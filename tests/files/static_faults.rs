@@ -418,3 +418,41 @@ fn designs_that_cannot_be_built_have_no_values() {
         "{inertia:?}"
     );
 }
+
+/// A moment along the normal of a smooth shell is refused with five unknowns a node, about a tangent it is not, nor
+/// with six, nor on a fold or a held edge.
+#[test]
+fn moments_along_normals_are_refused() {
+    let told = |nodes: &str, moment: [f64; 3], unknowns: &str, mesh: Option<Value>| {
+        let mut document = plate();
+        document["load_cases"]["push"] =
+            json!({"m": {"point": {"nodes": nodes, "moment": moment}}});
+        document["statics"] = json!({"node_unknowns": unknowns});
+        document["functions"] = json!({"mass": "mass", "C": {"compliance": {"case": "push"}}});
+        if let Some(mesh) = mesh {
+            document["structures"]["plate"]["mesh"] = mesh;
+        }
+        match Problem::parse(&document.to_string(), "plate.json", &[]) {
+            Ok(_) => String::new(),
+            Err(faults) => faults.to_string(),
+        }
+    };
+    for moment in [[0.0, 0.0, 1.0], [0.0, 1.0, -1e-4], [5.0, 0.0, 0.1]] {
+        let text = told("x1y0", moment, "five", None);
+        assert!(
+            text.contains("along the normal") && text.contains("/load_cases/push/m/point/moment"),
+            "{text}"
+        );
+        assert!(text.contains("\"six\""), "{text}");
+        assert_eq!(told("x1y0", moment, "six", None), "");
+        assert_eq!(told("x0", moment, "five", None), "", "a support has it");
+    }
+    assert_eq!(told("x1", [1.0, -2.0, 0.0], "five", None), "");
+    // A tilted panel: about its tangent (1, 0, 1), and about its normal.
+    let panel = json!({"panel": {"points": [[0, 0, 0], [1, 0, 1], [0, 1, 0], [1, 1, 1]], "elements": [2, 2]}});
+    assert_eq!(
+        told("x1y0", [1.0, 3.0, 1.0], "five", Some(panel.clone())),
+        ""
+    );
+    assert!(told("x1y0", [1.0, 3.0, 1.01], "five", Some(panel)).contains("along the normal"));
+}

@@ -22,4 +22,5 @@ mod shell_element;
 mod shell_plate;
 mod sizes;
 mod turned;
+mod supports;
 mod von_karman;

@@ -1,8 +1,9 @@
 //! Bodies of finite elements.
 
 use super::Checker;
-use crate::problem::elements::{frame_nodes, nodes_of, prepare};
+use crate::problem::elements::{frame_nodes, prepare};
 use crate::problem::finding::Finding;
+use crate::problem::holds::nodes_of;
 use crate::problem::parts::beams;
 use crate::problem::placement::GROUND;
 use crate::problem::pointer::{advice, join, keys};
@@ -104,10 +105,8 @@ impl Checker<'_> {
         };
         let held = elements.points.iter().map(|(name, held)| {
             let pointer = join(&join(&pointer, "points"), name);
-            match held {
-                Held::Node(set) => (join(&pointer, "node"), set, true),
-                Held::Edge(set) => (join(&pointer, "edge"), set, false),
-            }
+            let one = matches!(held, Held::Node(_));
+            (join(&pointer, held.key()), held.set(), one)
         });
         let mut wanted: Vec<(String, &String, bool)> = wanted;
         wanted.extend(held);
@@ -131,10 +130,11 @@ impl Checker<'_> {
             self.fault(Finding::new(place, found, expected).hint(hint));
         }
         for (name, held) in &elements.points {
-            let Held::Edge(set) = held else {
+            if matches!(held, Held::Node(_)) {
                 continue;
-            };
-            let place = join(&join(&join(&pointer, "points"), name), "edge");
+            }
+            let set = held.set();
+            let place = join(&join(&join(&pointer, "points"), name), held.key());
             match part.mesh.edge_sets.get(set) {
                 // A set that is not there has been told.
                 None if !all.contains(set.as_str()) => {}

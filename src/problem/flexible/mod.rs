@@ -18,9 +18,10 @@ use crate::functions::{Function, TerminalEvent};
 use crate::math::scalar::lift3;
 use crate::math::{Scalar, Vec3};
 use crate::model::finite::FiniteElements;
+use crate::model::flexible::Modes;
 use crate::model::flexible::{Form, Inertia, Modal};
-use crate::model::{LoadKind, Model};
-use crate::structures::floating::PointMotion;
+use crate::model::{ConstraintRow, JointFrame, LoadKind, Model};
+use crate::structures::floating::{NodeMotion, PointMotion};
 use shapes::{Shapes, Weighed, start, weighed};
 use std::sync::Arc;
 
@@ -77,6 +78,45 @@ pub(crate) struct Numbers<S> {
     /// Beams and bodies of files.
     shapes: Vec<Weighed<S>>,
     finite: Vec<FiniteElements<S>>,
+}
+
+/// The frame of a node that an interface follows, how it moves, and the rows that hold nothing: a node of two
+/// rotations follows but for the turn about the normal of its surface.
+fn tie<S: Scalar>(
+    node: &NodeMotion,
+    places: &[(usize, usize)],
+) -> (JointFrame<S>, Modes<S>, Vec<ConstraintRow>) {
+    let mut modes = Modes {
+        places: Vec::new(),
+        displacement: Vec::new(),
+        rotation: Vec::new(),
+    };
+    for (k, coordinate) in node.displacements.iter().enumerate() {
+        if let Some(coordinate) = coordinate {
+            modes.places.push(places[*coordinate]);
+            modes.displacement.push(Vec3::ith(k, S::one()));
+            modes.rotation.push(Vec3::zeros());
+        }
+    }
+    for (coordinate, rotation) in &node.rotations {
+        modes.places.push(places[*coordinate]);
+        modes.displacement.push(Vec3::zeros());
+        modes.rotation.push(lift3(rotation));
+    }
+    let (axes, left_out) = match &node.rotations[..] {
+        [(_, a), (_, b)] => {
+            let (a, b) = (a.normalize(), b.normalize());
+            let about_normal = ConstraintRow::Perpendicular { a: 0, b: 1 };
+            ([a, b, a.cross(&b)], vec![about_normal])
+        }
+        _ => ([0, 1, 2].map(|k| Vec3::ith(k, 1.0)), Vec::new()),
+    };
+    let frame = JointFrame {
+        point: lift3(&node.place),
+        axes: axes.map(|axis| lift3(&axis)),
+        length: S::zero(),
+    };
+    (frame, modes, left_out)
 }
 
 impl<S: Scalar> FlexibleBodies<S> {
@@ -152,6 +192,7 @@ impl<S: Scalar> FlexibleBodies<S> {
             });
         }
         if !model.flexible.is_empty() {
+            all.hold_ties(model);
             all.move_joints(model);
             all.move_loads(document, assembly, model);
         }
@@ -172,6 +213,17 @@ impl<S: Scalar> FlexibleBodies<S> {
             }
             if motion.coordinates.is_empty() {
                 return None;
+            }
+            if let Some(nodes) = shells.prepared.ties.get(name) {
+                let places: Vec<_> = model.flexible[flexible].places().collect();
+                let ties = nodes.iter().map(|node| tie(node, &places)).collect();
+                let body = model.tie(flexible, name, lift3(&motion.place), ties);
+                self.interfaces.push(Interface {
+                    flexible,
+                    point,
+                    body,
+                });
+                return Some(body);
             }
             let lift = |all: &[Vec3<f64>]| all.iter().map(lift3).collect();
             let modes = (lift(&motion.displacement), lift(&motion.rotation));
@@ -206,6 +258,21 @@ impl<S: Scalar> FlexibleBodies<S> {
             body,
         });
         Some(body)
+    }
+
+    /// Adds the points all of whose nodes follow, whatever holds them.
+    fn hold_ties(&mut self, model: &mut Model<S>) {
+        let of = |shells: &Shells| {
+            let (frame, prepared) = (shells.frame, shells.prepared.clone());
+            let names: Vec<String> = prepared.ties.keys().cloned().collect();
+            names
+                .into_iter()
+                .map(move |name| (frame, prepared.points[&name].place))
+        };
+        let all: Vec<(usize, Vec3<f64>)> = self.shells.iter().flat_map(of).collect();
+        for (frame, place) in all {
+            self.hold(model, frame, lift3(&place));
+        }
     }
 
     /// Moves a place to the body that stands for it.

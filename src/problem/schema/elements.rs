@@ -31,6 +31,10 @@ pub(crate) struct Elements {
     /// Nodes and edges by the names that joints, loads and functions use as points of the body.
     #[serde(default)]
     pub points: IndexMap<String, Held>,
+    /// Names of the points that welds hold (see `problem::holds`).
+    #[serde(skip)]
+    #[schemars(skip)]
+    pub welded: Vec<String>,
     /// The design of a reduced basis, if it is not that of the file.
     #[serde(skip)]
     #[schemars(skip)]
@@ -169,6 +173,29 @@ pub(crate) struct ReducedKeys {
 pub(crate) enum Held {
     /// A set of one node.
     Node(String),
-    /// A straight edge: its mean place, and the rotation of its line.
+    /// A straight edge, as `rigid` if a weld holds it, else as `mean`.
     Edge(String),
+    /// A straight edge all of whose nodes follow: it moves as a rigid body.
+    Rigid(String),
+    /// A straight edge whose average follows: its mean place, and the rotation of its line.
+    Mean(String),
+}
+
+impl Held {
+    /// The name of the set.
+    pub(crate) fn set(&self) -> &String {
+        match self {
+            Self::Node(set) | Self::Edge(set) | Self::Rigid(set) | Self::Mean(set) => set,
+        }
+    }
+
+    /// Its key in the file.
+    pub(crate) fn key(&self) -> &'static str {
+        match self {
+            Self::Node(_) => "node",
+            Self::Edge(_) => "edge",
+            Self::Rigid(_) => "rigid",
+            Self::Mean(_) => "mean",
+        }
+    }
 }

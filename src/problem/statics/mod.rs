@@ -22,6 +22,7 @@ use crate::structures::lumped_mass::LumpedMass;
 use crate::structures::material::Material;
 use crate::structures::mesh::Mesh;
 use crate::structures::modes::loose_part;
+use crate::structures::normal_moment::along_normal;
 use crate::structures::quality::{MeshFault, faults, orientation_faults};
 use crate::structures::shell::Terms;
 use crate::structures::statics::{StaticFailure, StaticProblem};
@@ -238,6 +239,27 @@ impl Statics {
         all.filter(|(_, function)| is_zero(function))
             .map(|(f, _)| f)
             .collect()
+    }
+
+    /// The first moment on a shell, by load case and load, of which a part is along the normal at a node without a
+    /// rotation about it, and where this node is. Designs that tilt the shell later have it turn the surface.
+    pub(crate) fn moment_along_normal(
+        &self,
+        document: &Document,
+        x: &[f64],
+    ) -> Option<(usize, usize, Vec3<f64>)> {
+        let scene = self.scene(document, x);
+        let held = (&self.supports[..], self.node_unknowns);
+        let cases = scene.cases.iter().enumerate();
+        let mut all = cases
+            .flat_map(|(c, case)| (case.iter().enumerate()).map(move |(l, load)| (c, l, load)));
+        all.find_map(|(case, number, load)| {
+            let Load::Point { nodes, moment, .. } = load else {
+                return None;
+            };
+            let node = along_normal(&scene.structure, held, (nodes.as_str(), moment)).ok()??;
+            Some((case, number, scene.structure.nodes[node]))
+        })
     }
 
     /// The structures at the design `x`.

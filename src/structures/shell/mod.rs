@@ -4,7 +4,7 @@ pub(crate) mod basis;
 mod correction;
 mod energy;
 mod field;
-mod frame;
+pub(crate) mod frame;
 mod mass;
 mod matrix;
 #[cfg(test)]

@@ -1,7 +1,7 @@
 //! The vectors of a reduced basis.
 
 use super::loads::patterns;
-use super::matrices::Matrices;
+use super::matrices::{Matrices, Tie};
 use super::spaces::Spaces;
 use crate::math::slices::{add_scaled, dot};
 use crate::model::finite::FiniteElements;
@@ -155,16 +155,17 @@ fn fixed_modes(
     }
 }
 
-/// A reduced basis of shells that are held at points.
+/// A reduced basis of shells that are held at points, and of which some edges are rigid.
 ///
 /// # Errors
 /// [`PencilFailure`]: the stiffness is singular with the axes held.
 pub(crate) fn reduced_basis(
     shells: &FiniteElements<f64>,
     points: &[&PointMotion],
+    ties: &[Tie],
     request: &Request,
 ) -> Result<ReducedBasis, PencilFailure> {
-    let mut matrices = Matrices::new(shells)?;
+    let mut matrices = Matrices::new(shells, ties)?;
     let matrices = &mut matrices;
     let boundary = boundary_modes(matrices, points);
     let (fixed, frequencies) = fixed_modes(matrices, &boundary, request.modes);

@@ -32,7 +32,7 @@ pub(crate) fn locked_part(
     }
     let mut bent = vec![0.0; q.len()];
     body.pairs.of.iter().for_each(|&i| bent[i] = q[i]);
-    let mut matrices = Matrices::new(&body.elements)?;
+    let mut matrices = Matrices::new(&body.elements, &[])?;
     let force = matrices.quadratic(&body.unknowns(&bent));
     let vectors = &body.basis.vectors;
     let stiff: Vec<Vec<f64>> = vectors.iter().map(|x| matrices.stiff(x)).collect();

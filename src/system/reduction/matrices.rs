@@ -13,6 +13,12 @@ const HALVINGS: usize = 12;
 /// Residual, relative to the load, at which a static solution has converged.
 const TOLERANCE: f64 = 1e-8;
 
+/// Stiffness that holds a rigid edge together while vectors are made, relative to that of its nodes.
+const TIED: f64 = 1e5;
+
+/// Rows over the unknowns that vanish where an edge moves as a rigid body.
+pub(crate) type Tie = Vec<Vec<(usize, f64)>>;
+
 /// Shells with the matrices of their unknowns.
 pub(super) struct Matrices<'a> {
     pub shells: &'a FiniteElements<f64>,
@@ -20,6 +26,8 @@ pub(super) struct Matrices<'a> {
     pub linear: Pencil,
     /// A tangent stiffness.
     tangent: Pencil,
+    /// Rows that vanish but for their stiffness.
+    ties: Vec<(f64, Vec<(usize, f64)>)>,
 }
 
 impl<'a> Matrices<'a> {
@@ -27,12 +35,24 @@ impl<'a> Matrices<'a> {
     ///
     /// # Errors
     /// [`PencilFailure`]: K is singular.
-    pub(super) fn new(shells: &'a FiniteElements<f64>) -> Result<Self, PencilFailure> {
+    pub(super) fn new(
+        shells: &'a FiniteElements<f64>,
+        ties: &[Tie],
+    ) -> Result<Self, PencilFailure> {
         let count = shells.mesh.coordinates;
         let mut columns: Vec<Vec<usize>> = (0..count).map(|j| vec![j]).collect();
         let elements = shells.mesh.elements.iter();
         let elements = elements.map(|e| e.coordinates.iter().flatten().copied().collect());
-        for all in elements.chain(shells.mesh.parts.iter().cloned()) {
+        let tied = ties.iter().map(|tie| {
+            let mut all: Vec<usize> = tie.iter().flatten().map(|&(i, _)| i).collect();
+            all.sort_unstable();
+            all.dedup();
+            all
+        });
+        for all in elements
+            .chain(shells.mesh.parts.iter().cloned())
+            .chain(tied)
+        {
             let all: Vec<usize> = all;
             for &j in &all {
                 columns[j].extend(all.iter().filter(|&&i| i > j));
@@ -50,12 +70,24 @@ impl<'a> Matrices<'a> {
             &linear.pattern,
             &mut linear.stiffness,
         );
+        // The least of K_ii / b_i² is that of the unknown that follows, in any units.
+        let stiffness = |row: &[(usize, f64)]| {
+            let all = row.iter().filter_map(|&(i, b)| {
+                let slot = linear.pattern.slot(i, i)?;
+                Some(linear.stiffness[slot] / (b * b))
+            });
+            TIED * all.reduce(f64::min).unwrap_or(0.0)
+        };
+        let rows = ties.iter().flatten();
+        let ties: Vec<_> = rows.map(|row| (stiffness(row), row.clone())).collect();
+        add_ties(&ties, &linear.pattern, &mut linear.stiffness);
         add_mass(shells, &linear.pattern, &mut linear.mass);
         linear.factorise_stiffness()?;
         Ok(Self {
             shells,
             linear,
             tangent: Pencil::new(pattern),
+            ties,
         })
     }
 
@@ -102,9 +134,17 @@ impl<'a> Matrices<'a> {
         let residual = |x: &[f64]| {
             let mut r: Vec<f64> = load.iter().map(|f| -f).collect();
             add_forces(self.shells, x, &mut r);
+            for (k, row) in &self.ties {
+                let force = k * along(row, x);
+                row.iter().for_each(|&(i, b)| r[i] += b * force);
+            }
             r
         };
-        let potential = |x: &[f64]| energy(self.shells, x) - dot(load, x);
+        let potential = |x: &[f64]| {
+            let tied = self.ties.iter();
+            let tied = tied.map(|(k, row)| 0.5 * k * along(row, x).powi(2));
+            energy(self.shells, x) + tied.sum::<f64>() - dot(load, x)
+        };
         for _ in 0..ITERATIONS {
             let r = residual(&x);
             if dot(&r, &r).sqrt() <= TOLERANCE * size {
@@ -115,6 +155,7 @@ impl<'a> Matrices<'a> {
                 pattern, stiffness, ..
             } = &mut self.tangent;
             add_tangent(self.shells, &x, pattern, stiffness);
+            add_ties(&self.ties, pattern, stiffness);
             self.tangent.factorise_stiffness().ok()?;
             let mut step = r.clone();
             self.tangent.solve(&mut step);
@@ -132,6 +173,24 @@ impl<'a> Matrices<'a> {
             x = moved(part);
         }
         None
+    }
+}
+
+/// A row times the unknowns.
+fn along(row: &[(usize, f64)], x: &[f64]) -> f64 {
+    row.iter().map(|&(i, b)| b * x[i]).sum()
+}
+
+/// Adds Σ k bᵀb of rows b.
+fn add_ties(ties: &[(f64, Vec<(usize, f64)>)], pattern: &SymmetricPattern, values: &mut [f64]) {
+    for (k, row) in ties {
+        for &(i, a) in row {
+            for &(j, b) in row.iter().filter(|(j, _)| *j <= i) {
+                if let Some(slot) = pattern.slot(i, j) {
+                    values[slot] += k * a * b;
+                }
+            }
+        }
     }
 }
 

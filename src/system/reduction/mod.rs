@@ -20,4 +20,5 @@ mod subspace;
 
 pub(crate) use basis::{ModeChoice, ReducedBasis, Request, reduced_basis};
 pub(crate) use locking::locked_part;
+pub(crate) use matrices::Tie;
 pub(crate) use project::{ProjectedShells, project};

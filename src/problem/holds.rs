@@ -1,0 +1,124 @@
+//! What holds the edges of bodies of elements: all of their nodes, or their average.
+//!
+//! The key of a point says it, or for `edge` the joints: a weld holds all nodes, as a support at rest does,
+//! other joints hold the average. The frame of a body has no part in it. Axes that are clamped at an edge of
+//! which only the average is held are held there by single nodes. A body with a reduced basis has its axes
+//! clamped at the first edge that is rigid.
+
+use super::schema::Document;
+use super::schema::elements::{ElementBasis, Elements, Held};
+use super::schema::joints::{Joint, JointPlace};
+use super::schema::mechanics::Point;
+use crate::math::Vec3;
+use crate::structures::floating::FrameNodes;
+use crate::structures::mesh::Mesh;
+
+/// The nodes of a set of nodes or of an edge.
+pub(crate) fn nodes_of(mesh: &Mesh, set: &str) -> Option<Vec<usize>> {
+    let nodes = mesh.node_sets.get(set).cloned();
+    nodes.or_else(|| mesh.edge_sets.get(set).map(|edges| edges.concat()))
+}
+
+/// The point of body `side` of a joint that its place names; none if it is another way there.
+fn named<'a>(joint: &'a Joint, side: usize, points: &[&'a String]) -> Option<&'a String> {
+    let body = &joint.between()[side];
+    let is = |name: &String| points.iter().copied().find(|&own| own == name);
+    match joint.place()? {
+        JointPlace::Named(name) => (points.iter().copied())
+            .find(|own| name.strip_prefix(body.as_str()) == Some(&format!(".{own}"))),
+        JointPlace::Each(pair) => match [&pair.a, &pair.b][side] {
+            Point::Named(name) => is(name),
+            Point::Coordinates(_) => None,
+        },
+        JointPlace::Coordinates(_) => None,
+    }
+}
+
+/// Finds the points that welds hold. A weld at coordinates counts for every point that no joint names.
+pub(super) fn find_welds(document: &mut Document) {
+    let (joints, bodies) = (&document.joints, &mut document.bodies);
+    for (body, elements) in bodies.iter_mut() {
+        let Some(elements) = &mut elements.elements else {
+            continue;
+        };
+        let points: Vec<&String> = elements.points.keys().collect();
+        let own = joints.values().flat_map(|joint| {
+            let sides = joint.between().iter().enumerate();
+            sides
+                .filter(|(_, name)| *name == body)
+                .map(move |(side, _)| (joint, side))
+        });
+        let (mut welded, mut known, mut elsewhere) = (Vec::new(), Vec::new(), false);
+        for (joint, side) in own {
+            let weld = matches!(joint, Joint::Weld(_));
+            match named(joint, side, &points) {
+                Some(name) if weld => welded.push(name.clone()),
+                Some(name) => known.push(name.clone()),
+                None => elsewhere |= weld,
+            }
+        }
+        if elsewhere {
+            let others = points.into_iter().filter(|name| !known.contains(name));
+            welded.extend(others.cloned());
+        }
+        elements.welded = welded;
+    }
+}
+
+/// Whether all nodes of a point follow what holds it.
+pub(super) fn is_rigid(elements: &Elements, name: &str) -> bool {
+    match elements.points.get(name) {
+        Some(Held::Rigid(_)) => true,
+        Some(Held::Edge(_)) => elements.welded.iter().any(|own| own == name),
+        Some(Held::Node(_) | Held::Mean(_)) | None => false,
+    }
+}
+
+/// The nodes that hold the axes, where `given` are those of the frame.
+pub(super) fn axes(
+    elements: &Elements,
+    given: FrameNodes,
+    (mesh, nodes): (&Mesh, &[Vec3<f64>]),
+) -> FrameNodes {
+    let edges = (elements.points.iter()).filter(|(_, held)| !matches!(held, Held::Node(_)));
+    let edges = edges.filter_map(|(name, held)| {
+        let mut of_edge = nodes_of(mesh, held.set())?;
+        of_edge.sort_unstable();
+        of_edge.dedup();
+        Some((is_rigid(elements, name), of_edge))
+    });
+    let edges: Vec<(bool, Vec<usize>)> = edges.collect();
+    let reduced = matches!(elements.basis, ElementBasis::Reduced(_));
+    if let (true, Some((_, first))) = (reduced, edges.iter().find(|(rigid, _)| *rigid)) {
+        return FrameNodes::Clamped(first.clone());
+    }
+    let FrameNodes::Clamped(clamped) = &given else {
+        return given;
+    };
+    let same = |of_edge: &[usize]| {
+        clamped.iter().all(|node| of_edge.contains(node))
+            && of_edge.iter().all(|node| clamped.contains(node))
+    };
+    let mean = edges.iter().any(|(rigid, of_edge)| !rigid && same(of_edge));
+    match mean.then(|| beside(mesh, nodes, clamped)).flatten() {
+        Some(chord) => FrameNodes::Chord(chord),
+        None => given,
+    }
+}
+
+/// Three nodes of the elements at a straight edge: its ends, and one off its line.
+fn beside(mesh: &Mesh, nodes: &[Vec3<f64>], edge: &[usize]) -> Option<[usize; 3]> {
+    let far = |from: usize| {
+        let distance = |node: &usize| (nodes[*node] - nodes[from]).norm();
+        let all = edge.iter().copied();
+        all.max_by(|a, b| distance(a).total_cmp(&distance(b)))
+    };
+    let start = far(*edge.first()?)?;
+    let end = far(start)?;
+    let along = (nodes[end] - nodes[start]).normalize();
+    let off = |node: &usize| (nodes[*node] - nodes[start]).cross(&along).norm();
+    let touching = mesh.shells.iter().filter(|own| own.contains(&start));
+    let all = touching.flatten().copied();
+    let third = all.max_by(|a, b| off(a).total_cmp(&off(b)))?;
+    Some([start, end, third])
+}
