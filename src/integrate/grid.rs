@@ -379,7 +379,7 @@ impl Grid {
 
     /// Steps of twice the size, each with the cells of both, if all have one size and their number is even.
     pub(crate) fn paired(&self) -> Option<Self> {
-        let even = self.is_equal() && self.steps().is_multiple_of(2);
+        let even = self.equal.len() == 1 && self.steps().is_multiple_of(2);
         even.then(|| self.doubled()).flatten()
     }
 

@@ -221,11 +221,16 @@ pub(crate) fn march<S: SolveScalar>(
         if let Some(ledger) = ledger.as_mut().filter(|_| Ledger::is_due(number)) {
             ledger.enter(model, &stepper.field.motions, duration.re() * end);
         }
-        if let Some(supply) = &mut supply {
-            let power = stepper.field.supplied_power(&to.v, &to.lambda);
-            let at = (&stepper.field.motions[..], power);
-            supply.look(model, at, (duration.re() * end, number))?;
-        }
+        let power = match &mut supply {
+            Some(supply) => {
+                let power = stepper.field.supplied_power(&to.v, &to.lambda);
+                let at = (&stepper.field.motions[..], power);
+                supply.look(model, at, (duration.re() * end, number))?;
+                power
+            }
+            None => 0.0,
+        };
+        let sampled = run.last() + 1;
         run.grid.push(end);
         if let Some(stiffness) = &mut stiffness
             && stiffness.seen(&mut stepper, &scale, to.view(), (h.re(), &run))
@@ -245,6 +250,14 @@ pub(crate) fn march<S: SolveScalar>(
             (&mut next, &intervals),
         )
         .map_err(|failure| failed(failure, (model, numbering), (number, duration.re() * end)))?;
+        // At the border of stability stiff modes may burst between the ends of steps, which stay tame.
+        if let Some(supply) = supply.as_mut().filter(|_| flexible) {
+            for k in sampled..=run.last() {
+                BodyMotion::all(numbering, run.q(k), run.v(k), &mut motions);
+                let at = (duration.re() * end, number);
+                supply.look(model, (&motions, power), at)?;
+            }
+        }
         let tape = tape_of(&mut run);
         if tape.keeps(number) {
             tape.block
