@@ -6,8 +6,8 @@
 //!
 //! The surface holds the rotation about D to its own, so a fixed axis f of a smooth node fixes the
 //! rotation about P f, its projection on the tangent plane: a structure that is turned with its supports
-//! stays the same, and what is fixed in addition makes it no softer. With s the sine below which an axis
-//! counts as along D (see [`along_director`]):
+//! stays the same, and what is fixed in addition makes it no softer (but for the error of directors). With
+//! s the sine below which an axis counts as along D (see [`along_director`]):
 //!
 //! | fixed axes | unknown rotations about tangents | about D |
 //! |---|---|---|
@@ -15,7 +15,7 @@
 //! | f, \|P f\| > s | D × f | free |
 //! | f, \|P f\| ≤ s | t1, t2 | fixed |
 //! | two, of which x is the third axis, \|D·x\| > s | none | free |
-//! | two, \|D·x\| ≤ s | D × f, f the one farther from D | fixed |
+//! | two, \|D·x\| ≤ s | x | fixed |
 //! | three | none | fixed |
 
 use super::mesh::UnknownSet;
@@ -264,12 +264,13 @@ fn smooth(director: &Vec3<f64>, along: f64, fixed: [bool; 3], free: Normal) -> R
     let both = Tangents::Both(least.unwrap_or(0));
     let axes: Vec<usize> = (0..3).filter(|&k| fixed[k]).collect();
     let (tangents, normal) = match axes[..] {
+        [] if free == Normal::Unknown => return Rotations::Global([true; 3]),
         [] => (both, free),
         [k] if off_director(k) > along => (Tangents::Across(k), free),
         [_] => (both, Normal::Fixed),
         [a, b] if director[3 - a - b].abs() > along => (Tangents::Fixed, free),
-        [a, b] if off_director(a) >= off_director(b) => (Tangents::Across(a), Normal::Fixed),
-        [_, b] => (Tangents::Across(b), Normal::Fixed),
+        // About the third axis, which is a tangent but for the error of the director.
+        [_, _] => return Rotations::Global(fixed.map(|fixed| !fixed)),
         _ => (Tangents::Fixed, Normal::Fixed),
     };
     Rotations::Smooth(tangents, normal)

@@ -145,7 +145,7 @@ fn check(seed: u64, fold: bool, unknowns: NodeUnknowns, terms: Terms, size: f64)
     ];
     let supports = [
         Support::of("x0", [true; 3], [true, false, false]),
-        Support::of("x1y0", [false, false, true], [false, true, true]),
+        Support::of("x1y0", [false, false, true], [false, true, false]),
     ];
     let structure = structure(&mut Numbers::new(seed), fold);
     let cases = cases(size);
