@@ -86,6 +86,8 @@ mod beams;
 mod elements;
 mod loads;
 mod modal;
+mod places;
+mod rods;
 mod starts;
 
 faults! {
