@@ -84,11 +84,17 @@ fn of_network(model: &Model<f64>, block: &Block, tolerance: f64) -> Option<Vec<D
         }
     }
     let out = (0..rows.list.len()).filter(|i| numbers.binary_search(i).is_err());
+    // In a long motion rows open by about their part across the others.
+    let weak = order.get(strong).map_or(0.0, |own| own.1);
+    let misfit = |i: usize| match misfits[i] <= EXACT {
+        true => 0.0,
+        false => misfits[i].max(weak),
+    };
     let out: Vec<DependentRow> = out
         .map(|i| DependentRow {
             joint: rows.list[i].joint,
             row: rows.list[i].row,
-            misfit: if misfits[i] <= EXACT { 0.0 } else { misfits[i] },
+            misfit: misfit(i),
         })
         .collect();
     let fits = out.iter().all(|own| own.misfit <= tolerance);
