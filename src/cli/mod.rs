@@ -199,8 +199,8 @@ fn load(job: &Job) -> Result<Problem, Failure> {
 fn read(job: &Job) -> Result<Problem, Failure> {
     let problem = read_with(job, &overrides(job)?)?;
     if !job.quiet {
-        for redundancy in &problem.redundant {
-            tell(&format!("{redundancy}\n"));
+        for note in problem.notes_of_input() {
+            tell(&format!("{note}\n"));
         }
     }
     Ok(problem)

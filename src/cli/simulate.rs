@@ -128,6 +128,7 @@ fn as_json(
     let mut warnings: Vec<String> = simulation.warning.iter().cloned().collect();
     warnings.extend(simulation.at.doubts(problem, 0..names.len()));
     let first = &simulation.observations[0];
+    let conserved = simulation.at.scene.model.conserves_energy();
     let (position, velocity) = simulation.constraint_drift();
     let mut all = json!({
         "name": problem.name,
@@ -144,7 +145,11 @@ fn as_json(
         "energy": {
             "start": first.kinetic + first.potential,
             "largest_change": simulation.energy_drift(),
-            "conserved": simulation.at.scene.model.conserves_energy(),
+            "conserved": conserved,
+            "meaning": match conserved {
+                true => "no drive, load or damping does work; largest_change is the error of the run",
+                false => "drives, loads or damping do work; largest_change contains it",
+            },
         },
         "constraint_drift": {"position": position, "velocity": velocity},
         "start": driver::start::notes(problem, &simulation.at.x),

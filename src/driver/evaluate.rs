@@ -52,10 +52,11 @@ impl Evaluated {
         let mut scene = problem.unlowered_scene::<f64>(x);
         // Coordinates and points of flexible bodies have no mass of their own.
         let model = &scene.model;
+        let tolerance = problem.input_tolerance();
         let not_solid = |(k, body): &(usize, &RigidBody<f64>)| {
             let frame = |flexible: &FlexibleBody<f64>| flexible.frame == *k;
             let own = !model.is_of_flexible(*k) || model.flexible.iter().any(frame);
-            own && !body.is_solid()
+            own && !body.is_solid(tolerance)
         };
         if let Some((_, body)) = model.bodies.iter().enumerate().find(not_solid) {
             return Err(IntegrationFailure::Unphysical {

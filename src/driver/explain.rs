@@ -11,6 +11,7 @@ use crate::model::{Mobility, Model};
 use crate::problem::Problem;
 use crate::report::{Explanation, FunctionUse, IntegrationUse, LinearUse, SystemSize};
 use crate::system::accelerations::{Accelerations, FallbackReason};
+use crate::system::left_out::listed;
 use crate::system::{Numbering, placement};
 
 /// The motion of a problem's start, or a stretch of it.
@@ -336,17 +337,37 @@ fn lowering(
     if all.len() > TOLD {
         kept.push(format!("{} more", all.len() - TOLD));
     }
-    for (before, after) in written.joints.iter().zip(&lowered.joints) {
+    left_out.extend(rows_left_out(written, lowered));
+    left_out.extend(problem.notes_of_input());
+    (left_out, kept)
+}
+
+/// Largest number of joints whose rows are told one by one, of those that lose equally many.
+const ALONE: usize = 8;
+
+/// The rows that the reductions leave out, with one line for many joints that are alike.
+fn rows_left_out(written: &Model<f64>, lowered: &Model<f64>) -> Vec<String> {
+    let joints = written.joints.iter().zip(&lowered.joints);
+    let counts = joints.map(|(before, after)| {
         let (all, rows) = (before.imposed().count(), after.imposed().count());
-        if rows < all {
-            let name = &before.name;
-            left_out.push(format!("{} of {all} rows of joint \"{name}\"", all - rows));
+        (all.saturating_sub(rows), all, before.name.as_str())
+    });
+    let lost: Vec<_> = counts.filter(|own| own.0 > 0).collect();
+    let mut lines = Vec::new();
+    for (i, &(rows, all, name)) in lost.iter().enumerate() {
+        let is_like = |own: &&(usize, usize, &str)| (own.0, own.1) == (rows, all);
+        let group: Vec<&str> = lost.iter().filter(is_like).map(|own| own.2).collect();
+        if group.len() <= ALONE {
+            lines.push(format!("{rows} of {all} rows of joint \"{name}\""));
+        } else if !lost[..i].iter().any(|own| is_like(&own)) {
+            let names = listed(&group);
+            lines.push(format!(
+                "{rows} of {all} rows of each of {} joints: {names}",
+                group.len()
+            ));
         }
     }
-    for redundancy in &problem.redundant {
-        left_out.push(redundancy.to_string());
-    }
-    (left_out, kept)
+    lines
 }
 
 /// The warning that the discretisation error of merged bodies differs from that of their parts, if

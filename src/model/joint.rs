@@ -70,6 +70,14 @@ impl ConstraintRow {
         }
     }
 
+    /// Unit of the row's value: 1 of an angle, and `length` otherwise.
+    pub(crate) fn size(self, length: f64) -> f64 {
+        match self {
+            Perpendicular { .. } => 1.0,
+            Coincident(_) | Sliding { .. } | Distance => length,
+        }
+    }
+
     /// Whether the row transmits a force.
     pub(crate) fn has_force(self) -> bool {
         match self {
@@ -266,11 +274,22 @@ pub(crate) struct Joint<S> {
     /// Redundant rows of [`Joint::all_rows`]: they follow from those of other joints and are not
     /// imposed at the start. A run may exchange them for others (see `system::redundant_rows`).
     pub redundant: Vec<ConstraintRow>,
+    /// How well redundant rows have to fit.
+    pub fit: Fit,
     /// Trivially satisfied rows: they hold in all motions that the bodies' mobility admits, and are
     /// not imposed.
     pub trivial_rows: Vec<ConstraintRow>,
     /// How the frame on body A moves with its elastic coordinates; of attachments only.
     pub modes: Option<Modes<S>>,
+}
+
+/// How well the redundant rows of a scene have to fit.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub(crate) struct Fit {
+    /// Tolerance of the input: a part of the size of a loop, and an angle \[rad\].
+    pub tolerance: f64,
+    /// Whether rows are redundant only within this tolerance, as the numbers of a file are rounded.
+    pub rounded: bool,
 }
 
 impl<S> Joint<S> {
@@ -304,6 +323,6 @@ impl<S> Joint<S> {
 parameters!(struct JointFrame {; point, axes, length });
 
 parameters!(struct Joint {
-    name, kind, body_a, body_b, redundant, trivial_rows;
+    name, kind, body_a, body_b, redundant, fit, trivial_rows;
     frame_a, frame_b, drives, modes
 });

@@ -23,7 +23,7 @@ pub(crate) use axes::Axes;
 pub(crate) use distributed::{DistributedLoad, Spread};
 pub(crate) use drive::{DegreeOfFreedom, Drive};
 pub(crate) use flexible::{FlexibleBody, Form, Inertia, Modes};
-pub(crate) use joint::{ConstraintRow, Joint, JointFrame, JointKind};
+pub(crate) use joint::{ConstraintRow, Fit, Joint, JointFrame, JointKind};
 pub(crate) use load::{Load, LoadKind};
 pub(crate) use mobility::Mobility;
 pub(crate) use rigid_body::RigidBody;
@@ -74,6 +74,13 @@ impl<S: Scalar> Model<S> {
             }
         };
         !driven && self.loads.iter().all(conserves) && self.flexible.iter().all(undamped)
+    }
+
+    /// How far redundant rows may be open, relative to a length or as an angle \[rad\]: the tolerance of
+    /// the input if rows fit only within it, and otherwise zero.
+    pub(crate) fn slack(&self) -> f64 {
+        let rounded = self.joints.iter().filter(|joint| joint.fit.rounded);
+        rounded.fold(0.0, |slack, joint| slack.max(joint.fit.tolerance))
     }
 
     /// Whether a body carries elastic coordinates or counts turns.
@@ -244,6 +251,7 @@ impl<S: Scalar> Model<S> {
             frame_b: at(Vec3::zeros()),
             drives: Vec::new(),
             redundant: Vec::new(),
+            fit: Fit::default(),
             trivial_rows: Vec::new(),
             modes: Some(Modes {
                 places,

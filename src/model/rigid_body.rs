@@ -5,7 +5,7 @@ use crate::math::rotation::Quat;
 use crate::math::{Mat3, Scalar, Vec3, parameters};
 
 /// A violation of the conditions of a solid up to this fraction of the largest moment is round-off.
-const ROUNDING: f64 = 1e-12;
+pub(crate) const ROUNDING: f64 = 1e-12;
 
 /// A rigid body. Its reference point is the centre of mass. Its axes are those of the body in the
 /// problem file.
@@ -53,17 +53,27 @@ impl<S: Scalar> RigidBody<S> {
 
 impl RigidBody<f64> {
     /// Whether mass and inertia are those of a solid: a positive mass, and [`is_inertia_of_solid`].
-    pub(crate) fn is_solid(&self) -> bool {
-        self.mass > 0.0 && is_inertia_of_solid(&self.inertia)
+    pub(crate) fn is_solid(&self, tolerance: f64) -> bool {
+        self.mass > 0.0 && is_inertia_of_solid(&self.inertia, tolerance)
     }
 }
 
 /// Whether an inertia is that of a solid. Principal moments are integrals of squares: none is
-/// negative, and none exceeds the sum of the other two.
-pub(crate) fn is_inertia_of_solid(inertia: &Mat3<f64>) -> bool {
+/// negative but for round-off, and none exceeds the sum of the other two by more than `tolerance`
+/// times the largest.
+pub(crate) fn is_inertia_of_solid(inertia: &Mat3<f64>, tolerance: f64) -> bool {
     let moments = inertia.symmetric_eigenvalues();
-    let sum: f64 = moments.iter().sum();
-    let slack = ROUNDING * moments.amax();
-    let possible = |moment: f64| moment >= -slack && moment <= sum - moment + slack;
-    moments.iter().all(|&moment| possible(moment))
+    moments.min() >= -ROUNDING * moments.amax()
+        && excess_of_inertia(inertia) <= tolerance.max(ROUNDING)
+}
+
+/// By how much the largest principal moment exceeds the sum of the other two, relative to itself; zero or
+/// negative for a solid.
+pub(crate) fn excess_of_inertia(inertia: &Mat3<f64>) -> f64 {
+    let moments = inertia.symmetric_eigenvalues();
+    let (largest, sum) = (moments.amax(), moments.iter().sum::<f64>());
+    match largest > 0.0 {
+        true => (2.0 * moments.max() - sum) / largest,
+        false => 0.0,
+    }
 }

@@ -10,7 +10,7 @@ use super::schema::mechanics::Shape;
 use crate::math::scalar::{length, unit};
 use crate::math::{Scalar, Vec3};
 use crate::model::{
-    DegreeOfFreedom, Drive, Joint, JointFrame, JointKind, Smoothness, TimeFunction,
+    DegreeOfFreedom, Drive, Fit, Joint, JointFrame, JointKind, Smoothness, TimeFunction,
 };
 
 /// The joints of a checked document with their drives, in its order.
@@ -103,6 +103,10 @@ fn joint<S: Scalar>(
         frame_b,
         drives: Vec::new(),
         redundant: Vec::new(),
+        fit: Fit {
+            tolerance: document.input_tolerance(),
+            rounded: false,
+        },
         trivial_rows: Vec::new(),
         modes: None,
     }

@@ -5,7 +5,6 @@
 //! document without a fault becomes a [`Problem`].
 
 mod beam;
-mod blocks;
 mod bounds;
 mod check;
 mod drawing;
@@ -65,13 +64,14 @@ use crate::functions::{Function, Scene};
 use crate::integrate::{self, Spacing};
 use crate::lower::Lowering;
 use crate::math::{Scalar, Vec3};
-use crate::model::ConstraintRow;
+use crate::model::rigid_body::{ROUNDING, excess_of_inertia};
+use crate::model::{ConstraintRow, Fit};
 use crate::optimiser::Method;
 use crate::structures::loads::Load;
 use crate::structures::quality::MeshFault;
 use crate::structures::structure::Structure;
 use crate::system::equilibrium;
-use crate::system::redundancy::Redundancy;
+use crate::system::left_out::{self, Redundancy};
 use schema::{Document, View};
 use std::path::Path;
 use std::sync::Arc;
@@ -190,7 +190,7 @@ pub struct Problem {
     /// Joints with redundant rows at the start design. These rows are left out at every design.
     pub(crate) redundant: Vec<Redundancy>,
     /// By joint: the rows that are left out.
-    left_out: Vec<Vec<ConstraintRow>>,
+    left_out: Vec<(Vec<ConstraintRow>, Fit)>,
     /// Reductions of its scenes; `None` if none shall be made.
     pub(crate) lowering: Option<Lowering>,
     /// The requested functions and the bodies on which they depend; `None` for all.
@@ -377,7 +377,9 @@ impl Problem {
     pub(crate) fn unlowered_scene<S: Scalar>(&self, x: &[S]) -> Scene<S> {
         let mut scene = scene::scene(&self.written, &self.order, x);
         for (joint, left_out) in scene.model.joints.iter_mut().zip(&self.left_out) {
-            joint.redundant.clone_from(left_out);
+            let (rows, fit) = left_out;
+            joint.redundant.clone_from(rows);
+            joint.fit = *fit;
         }
         if self.nearest_to.is_some() {
             let distance = self.distance_from_start(x);
@@ -390,6 +392,30 @@ impl Problem {
             focus.seen.apply(&mut scene);
         }
         scene
+    }
+
+    /// The tolerance of the input, relative.
+    pub(crate) fn input_tolerance(&self) -> f64 {
+        self.written.input_tolerance()
+    }
+
+    /// What is left out, or used though it does not fit, at the start: redundant rows of joints, and
+    /// inertias of no solid within the tolerance of the input.
+    pub(crate) fn notes_of_input(&self) -> Vec<String> {
+        let mut notes = left_out::told(&self.redundant);
+        let start = self.start();
+        notes.extend(self.written.bodies.iter().filter_map(|(name, body)| {
+            body.inertia.as_ref()?;
+            let excess = excess_of_inertia(&mass::mass_properties(body, &start).inertia);
+            (excess > ROUNDING).then(|| {
+                format!(
+                    "body \"{name}\": a principal moment of inertia is above the sum of the others by {excess:.1e} of it \
+                     (\"input_tolerance\" {:e}), and is used as it is",
+                    self.input_tolerance()
+                )
+            })
+        }));
+        notes
     }
 
     /// By body: velocity [m/s] and angular velocity [rad/s] in ground axes, if the file gives them

@@ -4,15 +4,18 @@
 use super::Problem;
 use super::elements::{mesh_quantities, prepared};
 use super::finding::Finding;
+use super::flexible::{HeldPlace, Holder};
 use super::joints::{at, holds_points};
 use super::placement::Assembly;
 use super::pointer::join;
 use super::quantity::Quantity;
+use super::scene;
+use super::schema::Document;
 use super::schema::joints::Joint;
 use super::schema::loads::Load;
 use super::schema::mechanics::Shape;
-use crate::math::Vec3;
-use crate::model::LoadKind;
+use crate::math::scalar::lift3;
+use crate::math::{Dual, Scalar, Vec3};
 use crate::system::placement::length_scale;
 
 /// Two points are the same up to this distance, relative to the length scale.
@@ -92,54 +95,14 @@ pub(super) fn off_points(problem: &Problem) -> Option<Finding> {
     if twice.is_some() {
         return twice;
     }
-    let x = problem.start();
-    let mut scene = problem.scene(&x);
-    let assembly = Assembly::new(document, &problem.order, &x);
-    let mut places = Vec::new();
-    for joint in scene
-        .model
-        .joints
-        .iter()
-        .filter(|joint| joint.modes.is_none())
-    {
-        let at = join("/joints", &joint.name);
-        places.push((at.clone(), joint.body_a, joint.frame_a.point));
-        places.extend(joint.body_b.map(|body| (at, body, joint.frame_b.point)));
-    }
-    for (load, written) in scene.model.loads.iter().zip(document.loads.values()) {
-        let at = join("/loads", &load.name);
-        match &load.kind {
-            LoadKind::Force { body, point, .. } => places.push((at, *body, *point)),
-            LoadKind::Spring {
-                body_a,
-                body_b,
-                point_a,
-                point_b,
-                ..
-            } => {
-                places.push((at.clone(), *body_a, *point_a));
-                places.extend(body_b.map(|body| (at, body, *point_b)));
-            }
-            LoadKind::Torque { body, .. } => {
-                if let Load::Torque(torque) = written
-                    && let Some(point) = &torque.point
-                {
-                    places.push((at, *body, assembly.in_body(&torque.body, point)));
-                }
-            }
-            LoadKind::TorsionSpring { .. }
-            | LoadKind::Damping { .. }
-            | LoadKind::BallDamping { .. }
-            | LoadKind::Friction { .. }
-            | LoadKind::Distributed(_) => {}
-        }
-    }
-    for (function, name) in scene.functions.iter_mut().zip(document.functions.keys()) {
-        function.for_each_place(&mut |body, point| {
-            places.extend(point.map(|point| (join("/functions", name), *body, *point)));
-        });
-    }
-    places.into_iter().find_map(|(pointer, body, point)| {
+    let (_, places) = scene::with_places(document, &problem.order, &problem.start());
+    places.into_iter().find_map(|place| {
+        let HeldPlace {
+            holder,
+            body,
+            point,
+        } = place;
+        let pointer = pointer_of(document, holder);
         let prepared = prepared(document, of(body)?);
         let size = prepared
             .mesh
@@ -159,6 +122,71 @@ pub(super) fn off_points(problem: &Problem) -> Option<Finding> {
                 names.join(", ")
             );
             Finding::new(pointer, found, expected)
+        })
+    })
+}
+
+/// Where the document has what holds a point.
+fn pointer_of(document: &Document, holder: Holder) -> String {
+    let within = |section: &str, name: Option<&String>| join(section, name.map_or("", |own| own));
+    match holder {
+        Holder::Joint(k) => within("/joints", document.joints.get_index(k).map(|own| own.0)),
+        Holder::Load(k) => within("/loads", document.loads.get_index(k).map(|own| own.0)),
+        Holder::Function(k) => within(
+            "/functions",
+            document.functions.get_index(k).map(|own| own.0),
+        ),
+        Holder::Until => "/simulation/until".to_owned(),
+    }
+}
+
+/// A place moves with a variable if it does so by more than this part of the size of its body, for a
+/// typical change of the variable.
+const MOVES: f64 = 1e-9;
+
+/// The first variable that moves a place off its node or interface: shapes are known at these alone.
+pub(super) fn moved_places(problem: &Problem) -> Option<Finding> {
+    let document = &problem.written;
+    let mut bodies = document.bodies.values();
+    if !bodies.any(|body| body.elements.is_some() || body.modal.is_some()) {
+        return None;
+    }
+    let start = problem.start();
+    problem.variables.iter().enumerate().find_map(|(i, variable)| {
+        let seed = |(j, &x): (usize, &f64)| Dual::new(x, if i == j { 1.0 } else { 0.0 });
+        let x: Vec<Dual> = start.iter().enumerate().map(seed).collect();
+        let change = variable.scale.max(variable.start.abs());
+        let (_, places) = scene::with_places(document, &problem.order, &x);
+        places.into_iter().find_map(|place| {
+            let (name, body) = document.bodies.get_index(place.body)?;
+            let (node, size) = match (&body.elements, &body.modal) {
+                (Some(elements), _) => {
+                    let nodes = &prepared(document, elements).mesh.nodes;
+                    let size = nodes.iter().fold(0.0_f64, |size, node| size.max(node.norm()));
+                    (place.point.map(|x| x.re().into()), size)
+                }
+                (None, Some(modal)) => {
+                    let scale = super::modal::scale(modal, &x);
+                    let point = place.point.map(|x| x.re());
+                    let nearest = modal.body().nearest(&point, scale.re())?;
+                    let node: Vec3<Dual> = lift3(&nearest.position);
+                    (node * scale, modal.body().size() * scale.re())
+                }
+                (None, None) => return None,
+            };
+            let moved = (place.point - node).map(|x| x.infinitesimal()).norm() * change;
+            (moved.is_nan() || moved > MOVES * size).then(|| {
+                let of = pointer_of(document, place.holder);
+                let paths = variable.paths.join(", ");
+                let found = format!(
+                    "the variable \"{}\" of {paths}, which moves the place of {of} on \"{name}\" off its node",
+                    variable.name
+                );
+                let expected = "variables that leave such places at nodes or interfaces of their bodies";
+                let hint = "name the point of the body instead of its coordinates, so that the place follows it";
+                let pointer = join("/variables", &variable.name);
+                Finding::new(pointer, found, expected).of_key().hint(Some(hint.into()))
+            })
         })
     })
 }

@@ -161,6 +161,7 @@ pub(super) fn parse(written: &str, file: &str, overrides: &[Override]) -> Result
                 .or_else(|| points::off_beams(&problem))
                 .or_else(|| points::off_points(&problem))
                 .or_else(|| points::off_interfaces(&problem))
+                .or_else(|| points::moved_places(&problem))
                 .or_else(|| driven_twice(&problem))
                 .or_else(|| unassembled(&problem));
             match finding {
@@ -237,7 +238,10 @@ const MOST_MESH_FAULTS: usize = 5;
 /// Leaves out redundant rows of the joints of a problem, whose start is `model`.
 fn leave_out(problem: &mut Problem, model: &mut Model<f64>) {
     problem.redundant = redundancy::leave_out(model);
-    let rows = model.joints.iter().map(|joint| joint.redundant.clone());
+    let rows = model
+        .joints
+        .iter()
+        .map(|joint| (joint.redundant.clone(), joint.fit));
     problem.left_out = rows.collect();
 }
 

@@ -1,6 +1,6 @@
 //! The map from a design to a scene, analytic in the design.
 
-use super::flexible::FlexibleBodies;
+use super::flexible::{FlexibleBodies, HeldPlace};
 use super::functions::FunctionBuilder;
 use super::mass::mass_properties;
 use super::placement::Assembly;
@@ -26,6 +26,15 @@ pub(crate) const GRAVITY: [f64; 3] = [0.0, -9.81, 0.0];
 
 /// The scene of a checked document at the design `x`; bodies are placed in `order`.
 pub(crate) fn scene<S: Scalar>(document: &Document, order: &[usize], x: &[S]) -> Scene<S> {
+    with_places(document, order, x).0
+}
+
+/// The same, with the places that joints, loads and functions hold on flexible bodies.
+pub(crate) fn with_places<S: Scalar>(
+    document: &Document,
+    order: &[usize],
+    x: &[S],
+) -> (Scene<S>, Vec<HeldPlace<S>>) {
     let assembly = Assembly::new(document, order, x);
     let gravity = match &document.gravity {
         Some(gravity) => vector(gravity, x),
@@ -72,13 +81,14 @@ pub(crate) fn scene<S: Scalar>(document: &Document, order: &[usize], x: &[S]) ->
         .as_ref()
         .map(|until| TerminalEvent::new(builder.instant(&until.measure), until.reaches.get(x)));
     flexible.move_functions(&mut model, &mut functions, &mut until);
-    Scene {
+    let scene = Scene {
         model,
         duration: simulation.duration.get(x),
         until,
         functions,
         unstarted,
-    }
+    };
+    (scene, flexible.places)
 }
 
 /// Gives torsion springs counters of their turns, which start as the angles of their joints do.

@@ -1,7 +1,7 @@
 //! Initial rates of joints: velocities of the bodies at which the joints have the rates of the
 //! file.
 //!
-//! The blocks of joints are processed from ground outwards (see [`super::blocks`]). Behind a joint
+//! The blocks of joints are processed from ground outwards (see [`crate::system::blocks`]). Behind a joint
 //! in no loop, the velocity field of the far body is that of the near body, plus their relative
 //! motion by the velocities of the file, plus the difference between the prescribed rates and the
 //! file's:
@@ -15,12 +15,12 @@
 //! file that violate the joints are projected last, all together, with the rates as additional
 //! rows.
 
-use super::blocks::Block;
 use super::hinge::{Hinge, hinge};
 use super::starts::{Asked, DOFS, Starts, put};
 use crate::math::rotation::matrix;
 use crate::math::{Scalar, Vec3};
 use crate::model::{Model, RigidBody};
+use crate::system::blocks::Block;
 use crate::system::bodies::velocities_of;
 use crate::system::failure::AssemblyFailure;
 use crate::system::nearest::nearest;

@@ -1,7 +1,7 @@
 //! Initial positions of joints: moves the placed bodies so that the joints have the angles and
 //! displacements of the file.
 //!
-//! The blocks of joints are processed from ground outwards (see [`super::blocks`]). A joint in no
+//! The blocks of joints are processed from ground outwards (see [`crate::system::blocks`]). A joint in no
 //! loop moves all bodies behind it as one rigid body,
 //!
 //! ```text
@@ -12,7 +12,6 @@
 //! fraction grows in [`STEPS`] steps, and the root of the block is held. Bodies behind a loop move
 //! with it. Joints that are open in the placement are closed last, all together.
 
-use super::blocks::{Block, Blocks};
 use super::hinge::{Hinge, Move, hinge, place};
 use super::placement::Assembly;
 use super::quantity::Quantity;
@@ -23,6 +22,7 @@ use super::schema::mechanics::Shape;
 use crate::math::rotation::{compose, conjugate, from_axis_angle, matrix};
 use crate::math::{Parameters, Scalar, Vec3};
 use crate::model::{DegreeOfFreedom, Drive, Joint, Mobility, Model, RigidBody, TimeFunction};
+use crate::system::blocks::{Block, Blocks};
 use crate::system::bodies::positions_of;
 use crate::system::failure::AssemblyFailure;
 use crate::system::nearest::nearest;

@@ -30,7 +30,7 @@ impl LumpedMass<f64> {
     /// the others.
     pub(crate) fn is_of_solid(&self) -> bool {
         let [xx, yy, zz, xy, yz, zx] = self.inertia;
-        is_inertia_of_solid(&Mat3::new(xx, xy, zx, xy, yy, yz, zx, yz, zz))
+        is_inertia_of_solid(&Mat3::new(xx, xy, zx, xy, yy, yz, zx, yz, zz), 0.0)
     }
 }
 

@@ -81,7 +81,11 @@ pub(super) fn assemble<S: SolveScalar>(
                 if meet || least <= CLOSED * scale.max(1.0) {
                     super::rank::explain(model, &q)
                 } else {
-                    open(model, numbering, &best, iteration)
+                    // A body that spins without inertia is singular in any position.
+                    match super::rank::explain(model, &q) {
+                        loose @ AssemblyFailure::WithoutInertia { .. } => loose,
+                        _ => open(model, numbering, &best, iteration),
+                    }
                 }
             })?;
         saddle.solve(&mut rhs);
@@ -203,16 +207,14 @@ fn check_left_out<S: Scalar>(
     scale: f64,
     iterations: usize,
 ) -> Result<(), AssemblyFailure> {
-    match redundancy::widest(model, (motions, S::zero())) {
-        Some(widest) if widest.gap.is_nan() || widest.gap > FOLLOWS * scale.max(1.0) => {
-            Err(AssemblyFailure::Open {
-                joint: model.joints[widest.joint].name.clone(),
-                row: widest.row.describe().to_string(),
-                gap: widest.gap,
-                iterations,
-            })
-        }
-        _ => Ok(()),
+    match redundancy::open(model, (motions, S::zero()), FOLLOWS * scale.max(1.0)) {
+        Some(widest) => Err(AssemblyFailure::Open {
+            joint: model.joints[widest.joint].name.clone(),
+            row: widest.row.describe().to_string(),
+            gap: widest.gap,
+            iterations,
+        }),
+        None => Ok(()),
     }
 }
 

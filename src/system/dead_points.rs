@@ -1,8 +1,8 @@
 //! Dead points of drives: positions in which a driven joint cannot move at first, however the others move, so that the drive
 //! does not determine the motion.
 
-use super::placement::guess;
-use super::redundancy::{BESIDE, Rows};
+use super::loop_rows::{Row, Rows};
+use super::placement::{guess, length_scale};
 use super::redundant_rows::RedundantRows;
 use crate::model::{Joint, Model};
 
@@ -15,16 +15,18 @@ pub(crate) fn is_at_dead_point(model: &Model<f64>, joint: &str) -> bool {
     let named = |own: &&mut Joint<f64>| own.name == joint;
     (free.joints.iter_mut().filter(named)).for_each(|own| own.drives.clear());
     let all: Vec<usize> = (0..model.joints.len()).collect();
-    let (with, without) = (Rows::new(model, &all), Rows::new(&free, &all));
-    let Some(placed) = without.close(guess(model).0) else {
+    let length = length_scale(model);
+    let (with, without) = (
+        Rows::new(model, &all, length),
+        Rows::new(&free, &all, length),
+    );
+    let Some(placed) = without.close(guess(model).0, None) else {
         return false;
     };
-    let mut distances = BESIDE.iter();
-    let Some(beside) = distances.find_map(|&distance| without.beside(&placed, distance)) else {
+    let Some(beside) = without.nearby(&placed) else {
         return false;
     };
-    let rank =
-        |rows: &Rows, q: &[f64]| rows.independent(q).into_iter().filter(|kept| *kept).count();
+    let rank = |rows: &Rows, q: &[f64]| rows.order(q).len();
     rank(&with, &placed) == rank(&without, &placed)
         && rank(&with, &beside) > rank(&without, &beside)
 }
@@ -37,10 +39,12 @@ pub(crate) fn driven_to_dead_point<'a>(
     time: f64,
 ) -> Option<&'a str> {
     let all: Vec<usize> = (0..model.joints.len()).collect();
-    let mut rows = Rows::new(model, &all);
+    let mut rows = Rows::new(model, &all, length_scale(model));
     rows.time = time;
     let left_out = RedundantRows::of(model, &rows.numbering);
-    let imposed: Vec<usize> = rows.numbers().filter(|&i| !left_out.contains(i)).collect();
+    let imposed: Vec<usize> = (0..rows.list.len())
+        .filter(|&i| !left_out.contains(rows.list[i].number))
+        .collect();
     let svd = rows
         .gradients(q)
         .0
@@ -49,10 +53,8 @@ pub(crate) fn driven_to_dead_point<'a>(
     let (least, _) = svd.singular_values.argmin();
     let combination = svd.v_t.as_ref()?.row(least).clone_owned();
     let part = |(k, &i): (usize, &usize)| {
-        let joint = &model.joints[rows.numbering.joint_of_row(i)];
-        let row = joint
-            .rows()
-            .nth(i - rows.numbering.rows(rows.numbering.joint_of_row(i)).start)?;
+        let Row { joint, row, .. } = rows.list[i];
+        let joint = &model.joints[joint];
         let driven = joint
             .drives
             .iter()

@@ -671,6 +671,22 @@ fn the_program_names_redundant_joints() {
     }
 }
 
+/// Joints that lose equally many rows are named in one line.
+#[test]
+fn the_program_names_many_redundant_joints_in_one_line() {
+    let file = concat!(
+        env!("CARGO_MANIFEST_DIR"),
+        "/problems/benchmarks/four_bars_10.json"
+    );
+    let arguments = ["simulate", file, "--set", "/simulation/duration=0.001"];
+    let told = expect(0, scratch().path(), &arguments).err;
+    let line = "joints \"C0\", \"C1\", \"C2\" and 7 more: 3 of 5 rows each follow from the others to 1e-11";
+    assert!(told.contains(line), "{told}");
+    assert_eq!(told.matches("follow from").count(), 1, "{told}");
+    let explained = expect(0, scratch().path(), &["explain", file]).out;
+    assert!(explained.matches("rows of").count() <= 6, "{explained}");
+}
+
 /// The speed of a pendulum is zero at its turning points.
 #[test]
 fn an_aggregate_of_a_speed_that_passes_zero_is_warned_of() {

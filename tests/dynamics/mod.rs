@@ -40,6 +40,7 @@ mod reactions_carry_weight;
 mod reduced_shells;
 mod redundant_joints;
 mod rotating_plates;
+mod rounded_joints;
 mod side_by_side;
 mod singular_positions;
 mod steps_in_use;

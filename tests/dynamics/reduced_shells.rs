@@ -12,7 +12,7 @@ use flexbody::system::{Numbering, flexible, placement};
 use nalgebra::{DMatrix, DVector};
 use reference::flexible::totals;
 use reference::models::Numbers;
-use reference::shells::{aluminium_plate, projected, shells, stiffened};
+use reference::shells::{aluminium_plate, projected, shells};
 
 /// A free body in this form, with the motion of its frame and coordinates, and its accelerations.
 fn free(numbers: &Numbers, form: Form<f64>, start: [&[f64]; 3]) -> (Model<f64>, Vec<f64>) {
@@ -59,15 +59,14 @@ fn balance((model, a): &(Model<f64>, Vec<f64>)) -> (Vec<f64>, Vec<f64>, Vec<f64>
 /// the coordinates are Vᵀ times theirs.
 #[test]
 fn a_basis_takes_the_mechanics_of_its_shells() {
-    for (seed, elements, clamped, vectors, more) in [
-        (1, [1, 1], false, 2, false),
-        (2, [2, 1], true, 5, false),
-        (3, [2, 2], false, 4, false),
-        (4, [2, 1], false, 4, true),
+    // Stiffeners are not among these: a basis leaves out the coupling of twist and bending of beams.
+    for (seed, elements, clamped, vectors) in [
+        (1, [1, 1], false, 2),
+        (2, [2, 1], true, 5),
+        (3, [2, 2], false, 4),
     ] {
         let mut numbers = Numbers(seed);
-        let make = if more { stiffened } else { shells };
-        let shells = make(&mut numbers, elements, clamped);
+        let shells = shells(&mut numbers, elements, clamped);
         let mut projected = projected(&mut numbers, &shells, vectors);
         // All of these bend.
         projected = flexbody::system::reduction::project(

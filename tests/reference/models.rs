@@ -105,6 +105,7 @@ pub fn joint(
     Joint {
         drives: Vec::new(),
         redundant: Vec::new(),
+        fit: Default::default(),
         trivial_rows: Vec::new(),
         modes: None,
         name: name.into(),

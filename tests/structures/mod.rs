@@ -21,6 +21,6 @@ mod shell_derivatives;
 mod shell_element;
 mod shell_plate;
 mod sizes;
-mod turned;
 mod supports;
+mod turned;
 mod von_karman;

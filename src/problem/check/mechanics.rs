@@ -135,7 +135,8 @@ impl Checker<'_> {
         }
         if body.inertia.is_some() {
             let inertia = mass_properties::<f64>(body, &[]).inertia;
-            self.inertia(&join(pointer, "inertia"), &inertia);
+            let tolerance = self.document.input_tolerance();
+            self.inertia(&join(pointer, "inertia"), &inertia, tolerance);
         }
     }
 

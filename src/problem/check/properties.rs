@@ -25,14 +25,20 @@ impl Checker<'_> {
         }
     }
 
-    /// Checks that an inertia is that of a solid.
-    pub(super) fn inertia(&mut self, pointer: &str, inertia: &Mat3<f64>) {
-        if !is_inertia_of_solid(inertia) {
+    /// Checks that an inertia is that of a solid, up to a part of its largest moment.
+    pub(super) fn inertia(&mut self, pointer: &str, inertia: &Mat3<f64>, tolerance: f64) {
+        if !is_inertia_of_solid(inertia, tolerance) {
             let mut moments: [f64; 3] = inertia.symmetric_eigenvalues().into();
             moments.sort_by(f64::total_cmp);
             let [a, b, c] = moments.map(rounded);
             let found = format!("principal moments of inertia {a}, {b}, {c} kg m²");
             let expected = "those of a solid: none negative, none above the sum of the others";
+            let expected = match tolerance > 0.0 {
+                true => {
+                    format!("{expected} by more than {tolerance:e} of it (\"input_tolerance\")")
+                }
+                false => expected.to_owned(),
+            };
             self.fault(Finding::new(pointer, found, expected));
         }
     }

@@ -164,7 +164,7 @@ impl Checker<'_> {
             if let Some(inertia) = &written.inertia {
                 let [xx, yy, zz, xy, yz, zx] = inertia.map(|q| q.value);
                 let inertia = Mat3::new(xx, xy, zx, xy, yy, yz, zx, yz, zz);
-                self.inertia(&join(&place, "inertia"), &inertia);
+                self.inertia(&join(&place, "inertia"), &inertia, 0.0);
             }
         }
     }

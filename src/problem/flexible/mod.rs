@@ -66,11 +66,32 @@ struct Interface<S> {
     body: usize,
 }
 
+/// What holds a point of a body, by its number in the document.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(crate) enum Holder {
+    Joint(usize),
+    Load(usize),
+    Function(usize),
+    Until,
+}
+
+/// A place that something holds on a flexible body.
+#[derive(Clone, Debug)]
+pub(crate) struct HeldPlace<S> {
+    pub holder: Holder,
+    /// The body.
+    pub body: usize,
+    /// The place in the undeformed body, body axes \[m\].
+    pub point: Vec3<S>,
+}
+
 /// The bodies with elastic coordinates of a scene.
 pub(crate) struct FlexibleBodies<S> {
     bodies: Vec<Elastic<S>>,
     shells: Vec<Shells>,
     interfaces: Vec<Interface<S>>,
+    /// The places that joints, loads and functions hold.
+    pub(crate) places: Vec<HeldPlace<S>>,
 }
 
 /// The numbers of the flexible bodies of a document, each kind in the order of the bodies.
@@ -149,6 +170,7 @@ impl<S: Scalar> FlexibleBodies<S> {
             bodies: Vec::new(),
             shells: Vec::new(),
             interfaces: Vec::new(),
+            places: Vec::new(),
         };
         let bodies = document.bodies.values().enumerate();
         let meshed = bodies.filter_map(|(frame, body)| Some((frame, body.elements.as_ref()?)));
@@ -276,7 +298,24 @@ impl<S: Scalar> FlexibleBodies<S> {
     }
 
     /// Moves a place to the body that stands for it.
-    fn move_place(&mut self, model: &mut Model<S>, body: &mut usize, point: &mut Vec3<S>) {
+    fn move_place(
+        &mut self,
+        model: &mut Model<S>,
+        holder: Holder,
+        body: &mut usize,
+        point: &mut Vec3<S>,
+    ) {
+        if model
+            .flexible
+            .iter()
+            .any(|flexible| flexible.frame == *body)
+        {
+            self.places.push(HeldPlace {
+                holder,
+                body: *body,
+                point: *point,
+            });
+        }
         if let Some(interface) = self.hold(model, *body, *point) {
             *body = interface;
             *point = Vec3::zeros();
@@ -289,11 +328,11 @@ impl<S: Scalar> FlexibleBodies<S> {
                 continue;
             }
             let (mut body, mut point) = (model.joints[k].body_a, model.joints[k].frame_a.point);
-            self.move_place(model, &mut body, &mut point);
+            self.move_place(model, Holder::Joint(k), &mut body, &mut point);
             (model.joints[k].body_a, model.joints[k].frame_a.point) = (body, point);
             if let Some(mut body) = model.joints[k].body_b {
                 let mut point = model.joints[k].frame_b.point;
-                self.move_place(model, &mut body, &mut point);
+                self.move_place(model, Holder::Joint(k), &mut body, &mut point);
                 model.joints[k].body_b = Some(body);
                 model.joints[k].frame_b.point = point;
             }
@@ -303,8 +342,9 @@ impl<S: Scalar> FlexibleBodies<S> {
     fn move_loads(&mut self, document: &Document, assembly: &Assembly<S>, model: &mut Model<S>) {
         for (k, written) in document.loads.values().enumerate() {
             let mut kind = model.loads[k].kind.clone();
+            let load = Holder::Load(k);
             match &mut kind {
-                LoadKind::Force { body, point, .. } => self.move_place(model, body, point),
+                LoadKind::Force { body, point, .. } => self.move_place(model, load, body, point),
                 LoadKind::Spring {
                     body_a,
                     body_b,
@@ -312,9 +352,9 @@ impl<S: Scalar> FlexibleBodies<S> {
                     point_b,
                     ..
                 } => {
-                    self.move_place(model, body_a, point_a);
+                    self.move_place(model, load, body_a, point_a);
                     if let Some(body) = body_b {
-                        self.move_place(model, body, point_b);
+                        self.move_place(model, load, body, point_b);
                     }
                 }
                 LoadKind::Torque { body, .. } => {
@@ -322,7 +362,7 @@ impl<S: Scalar> FlexibleBodies<S> {
                         && let Some(point) = &torque.point
                     {
                         let mut point = assembly.in_body(&torque.body, point);
-                        self.move_place(model, body, &mut point);
+                        self.move_place(model, load, body, &mut point);
                     }
                 }
                 // These act on joints, which have moved, or on all nodes.
@@ -346,16 +386,17 @@ impl<S: Scalar> FlexibleBodies<S> {
         if model.flexible.is_empty() {
             return;
         }
-        let mut visit = |body: &mut usize, point: Option<&mut Vec3<S>>| {
+        let mut visit = |holder: Holder, body: &mut usize, point: Option<&mut Vec3<S>>| {
             if let Some(point) = point {
-                self.move_place(model, body, point);
+                self.move_place(model, holder, body, point);
             }
         };
-        for function in functions {
-            function.for_each_place(&mut visit);
+        for (f, function) in functions.iter_mut().enumerate() {
+            function.for_each_place(&mut |body, point| visit(Holder::Function(f), body, point));
         }
         if let Some(until) = until {
-            until.measure.for_each_place(&mut visit);
+            let measure = &mut until.measure;
+            measure.for_each_place(&mut |body, point| visit(Holder::Until, body, point));
         }
     }
 }

@@ -61,6 +61,15 @@ pub(crate) struct Document {
     /// Gravitational acceleration in ground axes, default [0, −9.81, 0].
     #[schemars(extend("unit" = "m/s²"))]
     pub gravity: Option<Vector>,
+    /// How well rounded numbers fit: joints of loops may miss each other by this part of the size of
+    /// their loop and by this angle [rad], and an inertia may miss that of a solid by this part.
+    /// What is left out is said. Default 1e-5.
+    #[schemars(extend(
+        "minimum" = 1e-13,
+        "maximum" = 1e-3,
+        "design_variable" = "a tolerance is the file's, not a physical number"
+    ))]
+    pub input_tolerance: Option<f64>,
     /// Bodies by name.
     #[serde(default)]
     pub bodies: IndexMap<String, Body>,
@@ -111,6 +120,16 @@ pub(crate) struct Document {
     /// Settings of the plot of the motion.
     #[serde(default)]
     pub plot: Plot,
+}
+
+/// Default tolerance of the input.
+const INPUT_TOLERANCE: f64 = 1e-5;
+
+impl Document {
+    /// The tolerance of the input, relative.
+    pub(crate) fn input_tolerance(&self) -> f64 {
+        self.input_tolerance.unwrap_or(INPUT_TOLERANCE)
+    }
 }
 
 /// Duration and accuracy of the simulation.

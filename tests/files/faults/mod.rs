@@ -87,6 +87,8 @@ mod elements;
 mod loads;
 mod modal;
 mod mutations;
+mod places;
+mod rods;
 mod starts;
 
 faults! {
