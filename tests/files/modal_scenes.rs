@@ -169,7 +169,7 @@ fn a_coarse_bar_on_a_ball_runs() {
     let body = json!({"source": {"matrix_market": {"nodes": data("coarse_bar.nodes"), "stiffness": data("coarse_bar_k.mtx"), "mass": data("coarse_bar_m.mtx")}},
         "interfaces": {"a": 1, "z": 5}, "frame": {"clamped": "a"}, "modes": 5, "damping": {"ratio": 0.1}});
     let file = json!({
-        "version": 1, "name": "bar", "bodies": {"b": {"modal": body, "place": {"put": "a", "at": [0, 0, 0]}}},
+        "version": 1, "name": "bar", "gravity": [0, 0, 0], "bodies": {"b": {"modal": body, "place": {"put": "a", "at": [0, 0, 0]}}},
         "joints": {"h": {"spherical": {"between": ["b", "ground"], "at": "b.a"}}},
         "loads": {"f": {"force": {"body": "b", "point": "z", "direction": [0, 1, 0], "axes": "body", "magnitude": 20}}},
         "simulation": {"duration": 0.05, "tolerance": 1e-4, "method": {"radau": {"stages": 3}}},
