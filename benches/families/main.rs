@@ -317,7 +317,7 @@ fn estimates(
     number: usize,
     simulation: &dyn Fn(&mut Numbers) -> Value,
 ) -> Judged {
-    let kind = if number % 2 == 0 {
+    let kind = if number.is_multiple_of(2) {
         Kind::Space
     } else {
         Kind::Plane
@@ -349,7 +349,7 @@ pub fn judge_estimates(truth: &Answer, claimed: &Answer, round_off: f64) -> Judg
     let ratios = ratios(truth, claimed, round_off);
     let worst = ratios.iter().max_by(|a, b| a.1.total_cmp(&b.1));
     let verdict = match worst {
-        Some((name, ratio)) if !(*ratio <= 10.0) => {
+        Some((name, ratio)) if ratio.is_nan() || *ratio > 10.0 => {
             let words = format!("{name}: the true error is {ratio:.1} times the estimated one");
             if warned {
                 Verdict::Told(words)

@@ -426,7 +426,7 @@ fn an_event_that_only_touches_is_named() {
             "{u}: {said}"
         );
         assert!(of(top * (1.0 - 1e-6)).expect("crosses").is_ok());
-        let missed = of(top * (1.0 + 1e-4)).err().expect("misses");
+        let missed = of(top * (1.0 + 1e-4)).expect_err("misses");
         assert!(
             matches!(missed, IntegrationFailure::NotReached { .. }),
             "{missed}"

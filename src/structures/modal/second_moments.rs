@@ -219,7 +219,8 @@ mod tests {
     fn fitted_moments_have_the_exact_integrals_and_are_positive() {
         let (space, plane, line, still) =
             ([1.0, 0.7, 0.5], [1.0, 0.3, 0.0], [1.0, 0.0, 0.0], [0.0; 3]);
-        let cases: [(&[[f64; 3]], &[[f64; 3]]); 7] = [
+        type Fields<'a> = &'a [[f64; 3]];
+        let cases: [(Fields, Fields); 7] = [
             (&[space, space, space], &[space, space, space]),
             (&[space, plane, plane], &[space, space, plane]),
             (&[line, plane, plane, still], &[space, plane, plane, space]),
