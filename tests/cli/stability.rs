@@ -15,13 +15,13 @@ fn command(directory: &Path, arguments: &[&str]) -> Output {
 #[test]
 fn one_case_is_run_alone_and_written_where_it_is_asked_for() {
     let scratch = tempfile::tempdir().expect("a scratch directory");
-    let case = "damping/1e4/dop853 to 1e-9";
+    let case = "stiffness/10/dop853 in 1000";
     let done = command(scratch.path(), &["--only", case]);
     let text = String::from_utf8_lossy(&done.stdout);
     assert_eq!(done.status.code(), Some(0), "{text}");
     assert_eq!(text, "1 cases: 1 refused\n");
     let told = String::from_utf8_lossy(&done.stderr);
-    assert!(told.contains("the scene is stiff"), "{told}");
+    assert!(told.contains("the explicit steps are too large"), "{told}");
     // A part of the table does not replace the whole table.
     let files = |at: &Path| std::fs::read_dir(at).expect("a directory").count();
     assert_eq!(files(scratch.path()), 0);
@@ -34,7 +34,7 @@ fn one_case_is_run_alone_and_written_where_it_is_asked_for() {
     assert_eq!(files(&out), 2);
     let table = std::fs::read_to_string(out.join("stability.md")).expect("a table");
     assert!(
-        table.contains("| damping | 1 | 0 | 0 | 1 | 0 | 0 | 0 |"),
+        table.contains("| stiffness | 1 | 0 | 0 | 1 | 0 | 0 | 0 |"),
         "{table}"
     );
 }
