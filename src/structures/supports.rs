@@ -7,7 +7,7 @@
 //! The surface holds the rotation about D to its own, so a fixed axis f of a smooth node fixes the
 //! rotation about P f, its projection on the tangent plane: a structure that is turned with its supports
 //! stays the same, and what is fixed in addition makes it no softer (but for the error of directors). With
-//! s the sine below which an axis counts as along D (see [`along_director`]):
+//! s the sine below which an axis counts as along D (see `along_director`):
 //!
 //! | fixed axes | unknown rotations about tangents | about D |
 //! |---|---|---|
