@@ -13,7 +13,7 @@ function line(points, colour, width) {
     printf "<polyline points=\"%s\" fill=\"none\" stroke=\"%s\" stroke-width=\"%s\"/>\n", points, colour, width
 }
 function text(x, y, words) {
-    printf "<text x=\"%d\" y=\"%d\" font-family=\"sans-serif\" font-size=\"14\">%s</text>\n", x, y, words
+    printf "<text x=\"%d\" y=\"%d\" font-family=\"sans-serif\" font-size=\"12\">%s</text>\n", x, y, words
 }
 function plate(rigid,   i, k, p) {
     for (i = 0; i <= 8; i++) {
