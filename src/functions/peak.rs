@@ -105,31 +105,13 @@ impl Polynomial {
     }
 
     /// Zero between two fractions at which the polynomial has different signs, or the nearer end.
-    fn zero(&self, mut low: f64, mut high: f64) -> f64 {
-        let positive = self.value(low) > 0.0;
-        for _ in 0..BISECTIONS {
-            let middle = 0.5 * (low + high);
-            if (self.value(middle) > 0.0) == positive {
-                low = middle;
-            } else {
-                high = middle;
-            }
-        }
-        0.5 * (low + high)
+    fn zero(&self, low: f64, high: f64) -> f64 {
+        bisect(|x| self.value(x), low, high)
     }
 
     /// Zero of the derivative between two fractions at which it has different signs.
-    fn turn(&self, mut low: f64, mut high: f64) -> f64 {
-        let rises = self.slope(low) > 0.0;
-        for _ in 0..BISECTIONS {
-            let middle = 0.5 * (low + high);
-            if (self.slope(middle) > 0.0) == rises {
-                low = middle;
-            } else {
-                high = middle;
-            }
-        }
-        0.5 * (low + high)
+    fn turn(&self, low: f64, high: f64) -> f64 {
+        bisect(|x| self.slope(x), low, high)
     }
 
     /// The polynomial without the node that is farthest from `x`.
@@ -340,4 +322,18 @@ pub(crate) fn maximum_where<S: Scalar>(
         }
     }
     best
+}
+
+/// Zero of f between two places at which it has different signs, or the nearer end.
+fn bisect(f: impl Fn(f64) -> f64, mut low: f64, mut high: f64) -> f64 {
+    let positive = f(low) > 0.0;
+    for _ in 0..BISECTIONS {
+        let middle = 0.5 * (low + high);
+        if (f(middle) > 0.0) == positive {
+            low = middle;
+        } else {
+            high = middle;
+        }
+    }
+    0.5 * (low + high)
 }
