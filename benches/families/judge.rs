@@ -57,15 +57,32 @@ impl Tally {
 }
 
 /// The size against which round-off of a number is judged: that of the function's value or of its
-/// largest derivative.
+/// largest derivative, and a part of the largest number of a scene, as a force that is zero by
+/// symmetry is a difference of others.
 pub fn sizes(table: &BTreeMap<String, Estimate>) -> BTreeMap<String, f64> {
+    const OF_LARGEST: f64 = 1e-3;
     let mut sizes: BTreeMap<String, f64> = BTreeMap::new();
     for (name, number) in table {
         let group = group(name);
         let size = sizes.entry(group).or_insert(0.0);
         *size = size.max(number.value.abs());
     }
+    let values = OF_LARGEST * largest_value(table);
+    let all = sizes.values().fold(0.0, |a: f64, b| a.max(*b));
+    for (name, size) in &mut sizes {
+        let floor = match name.ends_with('/') {
+            true => OF_LARGEST * all,
+            false => values,
+        };
+        *size = size.max(floor);
+    }
     sizes
+}
+
+/// The largest value of a function.
+pub fn largest_value(table: &BTreeMap<String, Estimate>) -> f64 {
+    let values = table.iter().filter(|(name, _)| !name.contains(" / "));
+    values.fold(0.0, |a: f64, (_, number)| a.max(number.value.abs()))
 }
 
 /// The numbers that share a size: a value, or all derivatives of one function.

@@ -138,7 +138,7 @@ fn derivatives(directory: &Path, number: usize, kind: Kind) -> Judged {
     let (name, path, _) = variables[numbers.below(variables.len())];
     let exact = scene.document(&View::PLAIN, &json!({"tolerance": TRUTH}));
     let start = exact.pointer(path).and_then(Value::as_f64).unwrap_or(0.0);
-    let step = 1e-3 * start.abs().max(0.1);
+    let step = 2e-5 * start.abs().max(0.1);
     let at = |shift: f64| {
         let mut moved = exact.clone();
         if let Some(entry) = moved.pointer_mut(path) {
@@ -146,40 +146,48 @@ fn derivatives(directory: &Path, number: usize, kind: Kind) -> Judged {
         }
         simulate(directory, "moved", &moved, &[])
     };
-    // Four points: exact for polynomials of degree four.
-    let rows = [
+    // Four points are exact for polynomials of degree four; twice their distance tells the error.
+    let near = [
         (-2.0, 1.0 / 12.0),
         (-1.0, -2.0 / 3.0),
         (1.0, 2.0 / 3.0),
         (2.0, -1.0 / 12.0),
     ];
+    let far = near.map(|(shift, weight)| (2.0 * shift, 0.5 * weight));
     let mut slopes = std::collections::BTreeMap::new();
-    for (shift, weight) in rows {
+    let largest = judge::largest_value(table);
+    for shift in [-4.0, -2.0, -1.0, 1.0, 2.0, 4.0] {
         let Answer::Numbers { table: values, .. } = at(shift) else {
             return (
                 Verdict::Told("no values beside the design".into()),
                 Vec::new(),
             );
         };
+        let weight = |rows: &[(f64, f64)]| {
+            let own = rows.iter().filter(|row| row.0 == shift);
+            own.map(|row| row.1).sum::<f64>() / step
+        };
         for (function, value) in values.iter().filter(|(name, _)| !name.contains(" / ")) {
-            let slope: &mut Estimate =
-                slopes
-                    .entry(format!("{function} / {name}"))
-                    .or_insert(Estimate {
-                        value: 0.0,
-                        error: 0.0,
-                    });
-            slope.value += weight * value.value / step;
-            slope.error += (2e-12 * value.value.abs() + 1e-14) / step;
+            let (slope, coarse, round_off): &mut (f64, f64, f64) = slopes
+                .entry(format!("{function} / {name}"))
+                .or_insert((0.0, 0.0, 0.0));
+            *slope += weight(&near) * value.value;
+            *coarse += weight(&far) * value.value;
+            *round_off += (2e-13 * value.value.abs() + 1e-14 * largest) / step;
         }
     }
+    let sizes = judge::sizes(table);
+    let slope = |(name, (slope, coarse, round_off)): (String, (f64, f64, f64))| {
+        let size = sizes.get(&judge::group(&name)).copied().unwrap_or(0.0);
+        let error = (slope - coarse).abs() + round_off + 1e-7 * size;
+        let value = slope;
+        (name, Estimate { value, error })
+    };
+    let slopes: std::collections::BTreeMap<String, Estimate> =
+        slopes.into_iter().map(slope).collect();
     // The other derivatives are not in question.
     let mut asked = table.clone();
     asked.retain(|name, _| slopes.contains_key(name));
-    let sizes = judge::sizes(table);
-    for (name, slope) in &mut slopes {
-        slope.error += 1e-7 * sizes[&judge::group(name)];
-    }
     let warned = matches!(by_default, Answer::Numbers { warned: true, .. });
     let by_default = Answer::Numbers {
         table: asked,

@@ -158,9 +158,11 @@ pub(crate) fn estimate(
             of_value.of_samples = missed;
             of_value.error = (of_value.of_steps + missed).abs();
         }
+        let value = estimates.remove(0);
+        not_by_chance(problem, &mut estimates);
         all.push(FunctionError {
             function,
-            value: estimates.remove(0),
+            value,
             maximum: maximum.map(|(value, fine)| {
                 let of_steps = (value - fine) * steps;
                 Estimate {
@@ -174,6 +176,24 @@ pub(crate) fn estimate(
         });
     }
     Ok(all)
+}
+
+/// Raises errors that vanish by chance, where the error changes its sign with the step: the relative error of a
+/// derivative is at least a part of that of the gradient, each variable in its scale.
+fn not_by_chance(problem: &Problem, gradient: &mut [Estimate]) {
+    const PART: f64 = 0.02;
+    let largest = |of: fn(&Estimate) -> f64| {
+        let scaled = gradient.iter().zip(&problem.variables);
+        scaled
+            .map(|(d, variable)| of(d).abs() * variable.scale)
+            .fold(0.0, f64::max)
+    };
+    let relative = largest(|d| d.error) / largest(|d| d.value);
+    if relative.is_finite() {
+        for d in gradient {
+            d.error = d.error.max(PART * relative * d.value.abs());
+        }
+    }
 }
 
 /// The error of f_h, from f_2h − f_h and f_h − f_{h/2}; `gain` is 2ᵐ.

@@ -354,6 +354,7 @@ fn fast_spin(model: &Model<f64>, run: &Trajectory<f64>) -> Option<String> {
             shapes: modal.inertia.clone(),
             stiffness: modal.stiffness.clone(),
             damping: Vec::new(),
+            viscosity: None,
         };
         let lowest = frequencies(&numbers, Held::Axes).and_then(|all| all.first().copied());
         let Some(lowest) = lowest.map(|hertz| TAU * hertz) else {

@@ -7,6 +7,7 @@ use super::evaluator::{Evaluator, Judgements, unscaled};
 use super::integration::Integration;
 use super::known_evaluations::{KnownEvaluations, bits};
 use super::record::record;
+use super::resolved;
 use crate::optimiser::{self, Observer, Options, Outcome, Phase, Row, SavedState, Status};
 use crate::problem::Problem;
 use crate::report::evaluations::Work;
@@ -155,16 +156,19 @@ impl Solved {
             (self.counts, refreshes),
             (&start, end.as_ref()),
         );
-        let chaotic = match &end {
-            Some(Simulated::Motion(end)) => {
-                let all: Vec<usize> = asked(problem).collect();
-                chaos::of_motion(problem, &end.at, &all)
-            }
-            Some(Simulated::Statics(_)) | None => None,
-        };
-        optimum
-            .warnings
-            .extend(chaotic.map(|found| found.to_string()));
+        if let Some(Simulated::Motion(end)) = &end {
+            let all: Vec<usize> = asked(problem).collect();
+            let chaotic = chaos::of_motion(problem, &end.at, &all);
+            let ended = !matches!(self.outcome.status, Status::Interrupted | Status::TimeLimit);
+            let unresolved = match (&chaotic, &start) {
+                (None, Ok(Simulated::Motion(start))) if ended => {
+                    resolved::at_the_end(problem, (&start.at, &end.at), &all)
+                }
+                _ => None,
+            };
+            let told = chaotic.map(|found| found.to_string()).or(unresolved);
+            optimum.warnings.extend(told);
+        }
         if self.unlowered > 0 {
             optimum.warnings.push(format!(
                 "{} designs do not fulfil the conditions of the reduction of the scene and ran without it",

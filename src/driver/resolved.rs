@@ -11,7 +11,7 @@ use super::check::own_size;
 use super::error::{self, FunctionError};
 use super::evaluate::Evaluated;
 use super::integration::Integration;
-use crate::integrate::{IntegrationFailure, Samples, Settings, Spacing, simulate};
+use crate::integrate::{IntegrationFailure, Method, Samples, Settings, Spacing, simulate};
 use crate::problem::Problem;
 
 /// Largest error of a derivative, relative to its size.
@@ -88,7 +88,9 @@ pub(crate) fn of_design(
     let which: Vec<usize> = (0..scene.functions.len()).collect();
     let mut integration = Integration::new(problem, &scene, Some(&which), true);
     let (at, _) = Evaluated::with(&mut integration, problem, x)?;
-    by_halves(problem, &at, &which)
+    by_halves(problem, &at, &which, &|f, gradient| {
+        sizes(problem, &at, f, gradient)
+    })
 }
 
 /// The unresolved ones of these `gradients` of the functions `which`, first judged by doubled steps,
@@ -102,20 +104,67 @@ pub(crate) fn of_gradients(
     which: &[usize],
     gradients: &[Vec<f64>],
 ) -> Result<Vec<Unresolved>, IntegrationFailure> {
-    let alike = on_doubled_steps(problem, at, which).is_some_and(|coarse| {
-        let rows = which.iter().zip(gradients.iter().zip(&coarse));
-        rows.into_iter().all(|(&f, (fine, coarse))| {
-            let sizes = sizes(problem, at, f, fine);
-            let pairs = fine.iter().zip(coarse).zip(sizes);
-            pairs
-                .into_iter()
-                .all(|((x, y), size)| (x - y).abs() <= ALIKE * size)
-        })
-    });
-    match alike {
+    let sizes = |row: usize, gradient: &[f64]| sizes(problem, at, which[row], gradient);
+    match alike(problem, at, which, gradients, &sizes) {
         true => Ok(Vec::new()),
-        false => by_halves(problem, at, which),
+        false => by_halves(problem, at, which, &sizes),
     }
+}
+
+/// What the steps do not resolve of the gradients at the end of an optimisation, where the size of a
+/// derivative is at least that at the start, as the gradient at an optimum may vanish. Adaptive explicit
+/// steps resolve all by themselves. Where it cannot be judged there is none.
+pub(crate) fn at_the_end(
+    problem: &Problem,
+    (start, end): (&Evaluated, &Evaluated),
+    which: &[usize],
+) -> Option<String> {
+    let adaptive = !matches!(problem.simulation.spacing, Spacing::Steps(_));
+    if adaptive && end.run.method == Method::Dop853 || which.is_empty() {
+        return None;
+    }
+    let (first, _) = start.gradients(problem, which).ok()?;
+    let (last, _) = end.gradients(problem, which).ok()?;
+    let sizes = |row: usize, gradient: &[f64]| {
+        let before = sizes(problem, start, which[row], &first[row]);
+        let now = sizes(problem, end, which[row], gradient);
+        // A derivative by what has become a hundred times as large counts as much at a hundredth of its size.
+        let part = |i: usize| match (start.x[i].abs(), end.x[i].abs()) {
+            (before, now) if before < now && before > 0.0 => before / now,
+            _ => 1.0,
+        };
+        let pairs = now.into_iter().zip(before).enumerate();
+        pairs
+            .map(|(i, (now, before))| now.max(part(i) * before))
+            .collect()
+    };
+    let found = match alike(problem, end, which, &last, &sizes) {
+        true => return None,
+        false => by_halves(problem, end, which, &sizes).ok()?,
+    };
+    Some(format!("at the end {}", refusal(problem, &found)?))
+}
+
+/// The sizes of the derivatives of a function, by its place among the requested ones and its gradient.
+type Sizes<'a> = dyn Fn(usize, &[f64]) -> Vec<f64> + 'a;
+
+/// Whether doubled steps give nearly the same gradients.
+fn alike(
+    problem: &Problem,
+    at: &Evaluated,
+    which: &[usize],
+    gradients: &[Vec<f64>],
+    sizes: &Sizes<'_>,
+) -> bool {
+    let Some(coarse) = on_doubled_steps(problem, at, which) else {
+        return false;
+    };
+    let mut rows = gradients.iter().zip(&coarse).enumerate();
+    rows.all(|(row, (fine, coarse))| {
+        let sizes = sizes(row, fine);
+        let mut pairs = fine.iter().zip(coarse).zip(sizes);
+        pairs.all(|((x, y), size)| (x - y).abs() <= ALIKE * size)
+    })
 }
 
 /// The gradients on doubled steps; `None` if there are none.
@@ -148,12 +197,13 @@ fn by_halves(
     problem: &Problem,
     at: &Evaluated,
     which: &[usize],
+    sizes: &Sizes<'_>,
 ) -> Result<Vec<Unresolved>, IntegrationFailure> {
     let found = error::estimate(problem, at, which, true)?;
-    let of = |own: &FunctionError| {
+    let of = |(row, own): (usize, &FunctionError)| {
         let function = own.function;
         let values: Vec<f64> = own.gradient.iter().map(|d| d.value).collect();
-        let sizes = sizes(problem, at, function, &values);
+        let sizes = sizes(row, &values);
         let each = own.gradient.iter().zip(sizes).enumerate();
         let beyond = each.filter(|(_, (d, size))| d.error > LARGEST * size || d.error.is_nan());
         let named = beyond.map(|(i, (d, _))| Unresolved {
@@ -163,7 +213,7 @@ fn by_halves(
         });
         named.collect::<Vec<_>>()
     };
-    Ok(found.iter().flat_map(of).collect())
+    Ok(found.iter().enumerate().flat_map(of).collect())
 }
 
 /// What an error of each derivative of function f is compared with.

@@ -68,9 +68,12 @@ pub(crate) enum Samples {
 }
 
 /// Weights of samples at these fractions; their sum is one. Sums do not reach across `kinks` at which
-/// samples lie.
+/// samples lie. None of a run that ended before its first sample.
 pub(crate) fn weights(instants: &[f64], kinks: &[f64]) -> Vec<f64> {
     let mut all = vec![0.0; instants.len()];
+    if instants.is_empty() {
+        return all;
+    }
     let mut from = 0;
     let at = |kink: &f64| {
         instants

@@ -74,6 +74,8 @@ pub(crate) struct Modal<S> {
     pub stiffness: ModalStiffness<S>,
     /// Damping D: the force D q̇ acts against the coordinates; symmetric, m × m by rows.
     pub damping: Vec<S>,
+    /// β of a beam whose strains are damped in proportion to their stiffness \[s\]; `None` of others.
+    pub viscosity: Option<S>,
     /// Further numbers of a body of shells in a reduced basis.
     pub shells: Option<ReducedShells<S>>,
     /// Sections of a beam, which show how far it is turned; none of other bodies.
@@ -181,6 +183,6 @@ parameters!(struct FlexibleBody {
 
 parameters!(enum Form { Modal(; modal), Finite(; finite) });
 
-parameters!(struct Modal { sections; inertia, stiffness, damping, shells });
+parameters!(struct Modal { sections; inertia, stiffness, damping, viscosity, shells });
 
 parameters!(struct Modes { places; displacement, rotation });

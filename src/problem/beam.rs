@@ -5,7 +5,6 @@ use super::schema::flexible::{Beam, BeamSection, Damping, Frame, Functions, Stra
 use super::section::section;
 use crate::math::Scalar;
 use crate::structures::beam::SectionValues;
-use crate::structures::damping::RayleighDamping;
 use crate::structures::material::Material;
 use crate::structures::modal::{
     BeamDamping, BeamFrame, BeamModes, BendingFunctions, FlexibleBeam, StrainMeasure,
@@ -111,10 +110,8 @@ fn damping<S: Scalar>(written: Option<&Damping>, x: &[S]) -> BeamDamping<S> {
             of(|damping| damping.torsion_ratio).unwrap_or(all),
             of(|damping| damping.stretch_ratio).unwrap_or(all),
         ],
-        rayleigh: RayleighDamping {
-            mass: of(|damping| damping.mass).unwrap_or(S::zero()),
-            stiffness: of(|damping| damping.stiffness).unwrap_or(S::zero()),
-        },
+        mass: of(|damping| damping.mass).unwrap_or(S::zero()),
+        viscosity: of(|damping| damping.stiffness),
     }
 }
 

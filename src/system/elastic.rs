@@ -6,12 +6,20 @@ use super::strains;
 use crate::math::Scalar;
 use crate::math::slices::{add_scaled, dot};
 use crate::model::flexible::Modal;
-use crate::model::reduced::ReducedShells;
 
-/// The part of the stiffness in the damping of shells in a reduced basis, β \[s\]; `None` without it.
-fn viscosity<S: Scalar>(body: &Modal<S>) -> Option<(&ReducedShells<S>, S)> {
-    let shells = body.shells.as_ref()?;
-    shells.elements.damping.map(|[_, beta]| (shells, beta))
+/// The part of the stiffness in the damping, β \[s\]; `None` without it.
+fn viscosity<S: Scalar>(body: &Modal<S>) -> Option<S> {
+    let shells = body.shells.as_ref();
+    let of_shells = shells.and_then(|own| own.elements.damping);
+    of_shells.map(|[_, beta]| beta).or(body.viscosity)
+}
+
+/// Adds K q̇ + Σ k_p ∇e_p ė_p (see [`strains::add_viscous`]).
+fn add_viscous<S: Scalar>(body: &Modal<S>, q: &[S], rate: &[S], out: &mut [S]) {
+    strains::add_viscous(&body.stiffness, q, rate, out);
+    if let Some(shells) = &body.shells {
+        pairs::add_viscous(&shells.pairs, q, rate, out);
+    }
 }
 
 /// Strain energy U \[J\].
@@ -34,16 +42,15 @@ pub(crate) fn pull_energy(
     strains::pull_energy(&body.stiffness, q, scale, by_q, &mut cot.stiffness);
 }
 
-/// Adds ∂U/∂q + D q̇, and of damped shells β J_zᵀ A ż (see [`strains::add_viscous`]).
+/// Adds ∂U/∂q + D q̇, and where strains are damped β (K q̇ + Σ k_p ∇e_p ė_p).
 pub(crate) fn add_forces<S: Scalar>(body: &Modal<S>, q: &[S], rate: &[S], out: &mut [S]) {
     strains::add_forces(&body.stiffness, q, out);
     if let Some(shells) = &body.shells {
         pairs::add_forces(&shells.pairs, q, out);
     }
-    if let Some((shells, beta)) = viscosity(body) {
+    if let Some(beta) = viscosity(body) {
         let mut force = vec![S::zero(); q.len()];
-        strains::add_viscous(&body.stiffness, q, rate, &mut force);
-        pairs::add_viscous(&shells.pairs, q, rate, &mut force);
+        add_viscous(body, q, rate, &mut force);
         add_scaled(out, beta, &force);
     }
     strains::add_product(&body.damping, rate, out);
@@ -66,9 +73,11 @@ pub(crate) fn add_jacobian<S: Scalar>(
     if let Some(shells) = &body.shells {
         pairs::add_jacobian(&shells.pairs, q, by_y);
     }
-    if let Some((shells, beta)) = viscosity(body) {
+    if let Some(beta) = viscosity(body) {
         strains::add_viscous_jacobian(&body.stiffness, (q, rate), beta, (by_y, by_v));
-        pairs::add_viscous_jacobian(&shells.pairs, (q, rate), beta, (by_y, by_v));
+        if let Some(shells) = &body.shells {
+            pairs::add_viscous_jacobian(&shells.pairs, (q, rate), beta, (by_y, by_v));
+        }
     }
 }
 
@@ -85,19 +94,20 @@ pub(crate) fn pull_forces(
         pairs::pull_forces(&own.pairs, (q, psi), by_q, &mut cot.pairs);
     }
     strains::pull_forces(&body.stiffness, (q, psi), by_q, &mut cot.stiffness);
-    if let Some((shells, beta)) = viscosity(body) {
+    if let Some(beta) = viscosity(body) {
         let motion = (q, rate, psi);
         let mut force = vec![0.0; q.len()];
-        strains::add_viscous(&body.stiffness, q, rate, &mut force);
-        pairs::add_viscous(&shells.pairs, q, rate, &mut force);
+        add_viscous(body, q, rate, &mut force);
         let by = (&mut *by_q, &mut *by_rate);
         strains::pull_viscous(&body.stiffness, motion, beta, by, &mut cot.stiffness);
-        if let Some(own) = &mut cot.shells {
+        let mut by_beta = cot.viscosity.as_mut();
+        if let (Some(shells), Some(own)) = (&body.shells, &mut cot.shells) {
             let by = (&mut *by_q, &mut *by_rate);
             pairs::pull_viscous(&shells.pairs, motion, beta, by, &mut own.pairs);
-            if let Some([_, by_beta]) = &mut own.elements.damping {
-                *by_beta += dot(psi, &force);
-            }
+            by_beta = own.elements.damping.as_mut().map(|[_, beta]| beta);
+        }
+        if let Some(by_beta) = by_beta {
+            *by_beta += dot(psi, &force);
         }
     }
     strains::add_transposed(&body.damping, psi, by_rate);

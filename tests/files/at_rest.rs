@@ -300,3 +300,46 @@ fn unresolved_gradients_are_refused_by_name() {
     let found = resolved::of_design(&falling, &falling.start()).expect("runs");
     assert!(found.is_empty(), "{found:?}");
 }
+
+/// A mass on a spring that is made as stiff as the file allows. Its place at the end has the derivative
+/// −T sin(ωT)/(2 m ω) by the stiffness. Steps that resolve it at the start may be too long at the end, which is told by
+/// name.
+#[test]
+fn gradients_that_only_the_end_does_not_resolve_are_told() {
+    let method = r#"{"generalised_alpha": {"radius": 0.8}}"#;
+    let radau = r#"{"radau": {"stages": 2}}"#;
+    for (method, steps, stiffest, told) in [
+        (method, 60, 900.0, true),
+        (method, 60, 2.0, false),
+        (method, 8000, 900.0, false),
+        (radau, 30, 900.0, true),
+        (radau, 1000, 900.0, false),
+    ] {
+        let problem = parse(&format!(
+            r#"{{"version": 1, "name": "spring", "gravity": [0, 0, 0],
+            "bodies": {{"bob": {{"mass": 1, "inertia": {{"xx": 1, "yy": 1, "zz": 1}}, "place": {{"put": [0, 0, 0], "at": [1, 0, 0]}}}}}},
+            "loads": {{"spring": {{"spring": {{"between": ["bob", "ground"], "at": {{"a": [0, 0, 0], "b": [-2, 0, 0]}}, "rest_length": 2, "stiffness": 1}}}}}},
+            "simulation": {{"duration": 2, "steps": {steps}, "method": {method}}},
+            "functions": {{"place": {{"final": {{"position": {{"body": "bob", "direction": [1, 0, 0]}}}}}},
+                "action": {{"integral": {{"energy": "kinetic"}}}}}},
+            "variables": {{"stiffness": {{"path": "/loads/spring/spring/stiffness", "lower": 0.5, "upper": {stiffest}}}}},
+            "objective": {{"maximise": "action"}},
+            "constraints": {{"place": {{"function": "place", "lower": -10, "upper": 10}}}}}}"#
+        ));
+        let found = optimised(&problem);
+        assert_eq!(found.outcome.status, Status::Converged, "{method} {steps}");
+        // Steps that damp the motion have their largest action before the bound.
+        assert!(found.optimum.design["stiffness"].value > 0.1 * stiffest);
+        let words = "at the end the steps do not resolve the gradient: the derivative of \"place\" by \"stiffness\"";
+        let warned = found
+            .optimum
+            .warnings
+            .iter()
+            .any(|told| told.starts_with(words));
+        assert_eq!(
+            warned, told,
+            "{method} {steps} {:?}",
+            found.optimum.warnings
+        );
+    }
+}

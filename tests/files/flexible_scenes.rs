@@ -1,8 +1,9 @@
 //! Scenes of flexible bodies with published results: a four-bar mechanism with a misaligned joint, and the spin-up
 //! of a strip of shells.
 
-use crate::tests::reference::documents::problem as parsed;
+use crate::tests::reference::documents::{self, problem as parsed};
 use flexbody::driver::{Simulation, check, simulate};
+use flexbody::integrate::Method;
 use flexbody::problem::Problem;
 use serde_json::Value;
 use std::path::Path;
@@ -120,4 +121,28 @@ fn an_arm_of_shells_throws_as_one_of_beams() {
     let motion = run(&problem);
     let range = value(&problem, &motion, "range");
     assert!((range / 559.9 - 1.0).abs() < 0.01, "{range}");
+}
+
+/// A table has kinks, and the trial that chooses the method ends before them where a body is stiff.
+#[test]
+fn a_stiff_body_may_be_driven_by_a_table() {
+    for interpolation in ["linear", "monotone", "spline"] {
+        let table = json!({"times": [0, 0.2, 0.4], "values": [0, 0.01, 0.03], "interpolation": interpolation});
+        let motion = documents::run(&json!({
+            "version": 1, "name": "driven", "gravity": [0, -9.81, 0],
+            "bodies": {"bar": {
+                "beam": {"length": 0.5, "section": {"rectangle": {"width": 0.02, "height": 0.02}}, "modes": {"bending_y": 2, "bending_z": 1, "torsion": 0},
+                    "material": {"young": 7e10, "poisson": 0.3, "density": 2700}, "damping": {"ratio": 0.01}},
+                "place": {"put": "start", "at": [0, 0, 0]}
+            }},
+            "joints": {"hinge": {"revolute": {"between": ["bar", "ground"], "at": "bar.start", "axis": [0, 0, 1]}}},
+            "drives": {"motor": {"joint": "hinge", "turn": {"table": table}}},
+            "simulation": {"duration": 0.4, "tolerance": 1e-4},
+            "functions": {"angle": {"final": {"angle": {"joint": "hinge"}}}, "action": {"integral": {"energy": "kinetic"}}},
+            "variables": {"young": {"path": "/bodies/bar/beam/material/young", "lower": 1e6, "upper": 1e12}}
+        }));
+        assert_eq!(motion.at.run.method, Method::Radau { stages: 3 });
+        let angle = motion.at.function(0).value;
+        assert!((angle - 0.03).abs() < 1e-9, "{interpolation}: {angle}");
+    }
 }

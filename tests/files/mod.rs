@@ -1,6 +1,7 @@
 //! Contents of files: problems, records, figures, documents, and the layers of the source.
 
 mod at_rest;
+mod axes_of_beams;
 mod beam_scenes;
 mod beams;
 mod benchmarks;

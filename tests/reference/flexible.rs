@@ -74,6 +74,7 @@ pub fn modal(
         inertia,
         stiffness,
         damping,
+        viscosity: None,
         shells: None,
         sections: [].into(),
     })

@@ -3,7 +3,6 @@
 use super::sample::{ALUMINIUM, Numbers};
 use flexbody::model::flexible::{ModalStiffness, Quadratic};
 use flexbody::structures::beam::Section;
-use flexbody::structures::damping::RayleighDamping;
 use flexbody::structures::modal::sections::SectionForce;
 use flexbody::structures::modal::{
     BeamDamping, BeamFrame, BeamModes, BendingFunctions, FlexibleBeam, StrainMeasure,
@@ -32,10 +31,8 @@ fn beam(section: Section<f64>, bending: [usize; 2], torsion: usize) -> FlexibleB
         shear: true,
         damping: BeamDamping {
             ratios: [0.0; 3],
-            rayleigh: RayleighDamping {
-                mass: 0.0,
-                stiffness: 0.0,
-            },
+            mass: 0.0,
+            viscosity: None,
         },
     }
 }

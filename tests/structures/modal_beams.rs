@@ -5,7 +5,6 @@ use super::sample::{ALUMINIUM, Numbers};
 use flexbody::math::{Complex64, Dual, Mat3, Scalar, Vec3};
 use flexbody::model::flexible::Quadratic;
 use flexbody::structures::beam::{Section, SectionValues};
-use flexbody::structures::damping::RayleighDamping;
 use flexbody::structures::modal::frequencies::{Held, frequencies};
 use flexbody::structures::modal::sections::SectionForce;
 use flexbody::structures::modal::{
@@ -31,10 +30,8 @@ fn beam<S: Scalar>(section: Section<S>, length: S, bending: [usize; 2]) -> Flexi
         shear: true,
         damping: BeamDamping {
             ratios: [S::from(0.01); 3],
-            rayleigh: RayleighDamping {
-                mass: S::zero(),
-                stiffness: S::zero(),
-            },
+            mass: S::zero(),
+            viscosity: None,
         },
     }
 }
@@ -562,7 +559,7 @@ fn parametrised<S: Scalar>(p: &[S], section: usize, rayleigh: bool) -> (Flexible
     ) = (p[3], p[4], p[5]);
     match rayleigh {
         true => {
-            (body.damping.rayleigh.mass, body.damping.rayleigh.stiffness) = (p[6], p[7] * 1e-4);
+            (body.damping.mass, body.damping.viscosity) = (p[6], Some(p[7] * 1e-4));
         }
         false => body.damping.ratios = [p[6], p[7], p[6]],
     }

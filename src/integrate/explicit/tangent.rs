@@ -29,8 +29,10 @@ const AT: f64 = 1e-9;
 const MOST: f64 = 2.0;
 /// Part of the radius of B that counts: damping must be stable, not accurate.
 const OF_DAMPING: f64 = 1.0 / 3.0;
-/// Number of iterations at the start, for A and for B.
-const FIRST: [usize; 2] = [8, 4];
+/// Largest number of iterations at the start.
+const FIRST: usize = 8;
+/// They end where the rate of both grows by less than this part.
+const GROWS: f64 = 0.1;
 /// Numbers of steps after which the radii of A and of B are renewed.
 const EVERY: [usize; 2] = [8, 32];
 /// Size of the differences, relative to the scene's length and speed.
@@ -104,9 +106,15 @@ impl<'a, S: SolveScalar> Tangent<'a, S> {
         if own.field.factorise().is_err() {
             return own;
         }
-        for (by, n) in [By::Positions, By::Velocities].into_iter().zip(FIRST) {
+        for by in [By::Positions, By::Velocities] {
             own.begin(node, scale, by);
-            (0..n).for_each(|_| own.iterate((node, zero), scale, by));
+            for _ in 0..FIRST {
+                let before = own.rate();
+                own.iterate((node, zero), scale, by);
+                if own.rate() <= (1.0 + GROWS) * before {
+                    break;
+                }
+            }
         }
         own
     }
@@ -133,10 +141,14 @@ impl<'a, S: SolveScalar> Tangent<'a, S> {
 
     /// The largest step \[s\].
     pub(crate) fn largest_step(&self) -> f64 {
+        self.most / self.rate()
+    }
+
+    /// The rate at which the tangent moves \[1/s\].
+    fn rate(&self) -> f64 {
         let [a, b] = &self.iterations;
         let b = OF_DAMPING * b.radius;
-        let rate = 0.5 * (b + (b * b + 4.0 * a.radius).sqrt());
-        self.most / rate
+        0.5 * (b + (b * b + 4.0 * a.radius).sqrt())
     }
 
     /// Adds the work so far.

@@ -54,6 +54,11 @@ pub(crate) struct Stretch {
     steps: Vec<(f64, f64)>,
 }
 
+/// A step that is longer than the one before by this factor still grows. Growth extends a stretch by at most the other
+/// factor.
+const GROWS: f64 = 1.2;
+const MOST_OF_GROWTH: f64 = 10.0;
+
 impl Stretch {
     /// A part from the fraction `from` that ends after the work `most`.
     pub(crate) fn new(from: f64, most: f64) -> Self {
@@ -62,6 +67,15 @@ impl Stretch {
             most,
             steps: Vec::new(),
         }
+    }
+
+    /// Whether it ends after this work. Steps that still grow say little of the pace.
+    fn is_over(&self, work: f64) -> bool {
+        let grows = match self.steps[..] {
+            [.., (_, a), (_, b), (_, c)] => c - b > GROWS * (b - a),
+            _ => true,
+        };
+        work >= self.most && (!grows || work >= MOST_OF_GROWTH * self.most)
     }
 
     /// Fraction of the duration per unit of work. Of several steps only the second half counts,
@@ -168,7 +182,7 @@ fn march_until<S: SolveScalar>(
     }
     while let Some(width) = controller.next(run.grid.reached()) {
         if let Some(stretch) = &stretch
-            && run.counts.implicit_work() >= stretch.most
+            && stretch.is_over(run.counts.implicit_work())
         {
             break;
         }

@@ -203,6 +203,7 @@ impl<S: Scalar> FlexibleBodies<S> {
                     inertia: numbers.shapes,
                     stiffness: numbers.stiffness,
                     damping: numbers.damping,
+                    viscosity: numbers.viscosity,
                     shells: None,
                     sections: shapes.sections(),
                 }),

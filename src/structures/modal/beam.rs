@@ -22,7 +22,6 @@ use crate::math::legendre::gauss;
 use crate::math::{Mat3, Scalar, Vec3};
 use crate::model::flexible::{ModalInertia, ModalStiffness, Quadratic, Strain};
 use crate::structures::beam::{Section, SectionValues};
-use crate::structures::damping::RayleighDamping;
 use crate::structures::material::Material;
 
 /// Numbers of functions of each kind. Coordinates have this order.
@@ -50,8 +49,11 @@ pub(crate) enum StrainMeasure {
 pub(crate) struct BeamDamping<S> {
     /// Ratio ζ of critical damping for all modes of bending, of torsion, of stretch.
     pub ratios: [S; 3],
-    /// α M + β K in addition.
-    pub rayleigh: RayleighDamping<S>,
+    /// α of the additional damping α M \[1/s\].
+    pub mass: S,
+    /// β \[s\]: strains are damped β times their stiffness, so large bending without stretch meets no
+    /// damping of the stretch.
+    pub viscosity: Option<S>,
 }
 
 /// A straight uniform beam with elastic coordinates.
@@ -275,17 +277,16 @@ impl<S: Scalar> FlexibleBeam<S> {
         }
         let mut numbers = sums.numbers(strains);
         numbers.damping = self.damping_matrix(&numbers);
+        numbers.viscosity = self.damping.viscosity;
         numbers
     }
 
     fn damping_matrix(&self, numbers: &ModalNumbers<S>) -> Vec<S> {
         let (mass, stiffness) = (numbers.elastic_mass(), numbers.linear_stiffness());
-        let BeamDamping { ratios, rayleigh } = self.damping;
-        let mut damping: Vec<S> = (mass.iter().zip(&stiffness))
-            .map(|(&m, &k)| m * rayleigh.mass + k * rayleigh.stiffness)
-            .collect();
+        let heavy = self.damping.mass;
+        let mut damping: Vec<S> = mass.iter().map(|&m| m * heavy).collect();
         let m = self.modes.count();
-        let [bending, torsion, stretch] = ratios;
+        let [bending, torsion, stretch] = self.damping.ratios;
         let ratios = [bending, bending, torsion, stretch];
         // The kinds do not couple while the motion is small.
         for (range, ratio) in self.modes.ranges().into_iter().zip(ratios) {
@@ -390,6 +391,7 @@ impl<S: Scalar> Sums<S> {
                 strains,
             },
             damping: vec![S::zero(); m * m],
+            viscosity: None,
         }
     }
 }

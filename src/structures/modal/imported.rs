@@ -134,6 +134,7 @@ impl ImportedBody {
                 strains: Vec::new(),
             },
             damping: scaled(&self.damping, length),
+            viscosity: None,
         };
         let mass = numbers.elastic_mass();
         let stiffness = &numbers.stiffness.linear;

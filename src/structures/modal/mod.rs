@@ -34,6 +34,8 @@ pub(crate) struct ModalNumbers<S> {
     pub stiffness: ModalStiffness<S>,
     /// Damping matrix, by rows.
     pub damping: Vec<S>,
+    /// β of strains that are damped in proportion to their stiffness \[s\]; `None` without.
+    pub viscosity: Option<S>,
 }
 
 /// How a point of a body moves with each elastic coordinate.

@@ -156,11 +156,9 @@ pub(crate) fn alone<S: Scalar>(body: &FlexibleBody<S>) -> Vec<[S; 3]> {
             let m = weights.len();
             let own = |i: usize| {
                 let diagonal = i * (m + 1);
-                [
-                    modal.stiffness.linear[diagonal],
-                    weights[i],
-                    modal.damping[diagonal],
-                ]
+                let stiffness = modal.stiffness.linear[diagonal];
+                let viscous = modal.viscosity.unwrap_or_else(S::zero) * stiffness;
+                [stiffness, weights[i], modal.damping[diagonal] + viscous]
             };
             (0..m).map(own).collect()
         }

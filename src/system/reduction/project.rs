@@ -280,6 +280,7 @@ impl ProjectedShells {
                 strains,
             },
             damping: heavy.unwrap_or_else(|| vec![S::zero(); m * m]),
+            viscosity: None,
             shells: Some(ReducedShells {
                 basis: self.basis.clone(),
                 pairs,
