@@ -330,12 +330,10 @@ fn gradients_that_only_the_end_does_not_resolve_are_told() {
         assert_eq!(found.outcome.status, Status::Converged, "{method} {steps}");
         // Steps that damp the motion have their largest action before the bound.
         assert!(found.optimum.design["stiffness"].value > 0.1 * stiffest);
-        let words = "at the end the steps do not resolve the gradient: the derivative of \"place\" by \"stiffness\"";
-        let warned = found
-            .optimum
-            .warnings
-            .iter()
-            .any(|told| told.starts_with(words));
+        let words = "at the end the steps do not resolve the gradient: ";
+        let name = "the derivative of \"place\" by \"stiffness\"";
+        let is_told = |text: &String| text.starts_with(words) && text.contains(name);
+        let warned = found.optimum.warnings.iter().any(is_told);
         assert_eq!(
             warned, told,
             "{method} {steps} {:?}",

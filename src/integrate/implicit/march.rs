@@ -124,7 +124,11 @@ fn march_until<S: SolveScalar>(
         (model, duration.re()),
     );
     let estimates = controller.estimates() && method.is_adaptive();
-    let first = starting_stage(numbering, &start);
+    let mut first = starting_stage(numbering, &start);
+    if let Some(stretch) = &stretch {
+        // Drives and loads are those of this instant.
+        first.time = duration * stretch.from;
+    }
     let models = (model, &real);
     let mut solver = Solver::new(
         (method, settings.solver),
