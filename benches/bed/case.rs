@@ -69,6 +69,7 @@ impl Case {
             Status::Stalled
                 | Status::Inconsistent { .. }
                 | Status::AtPrecision
+                | Status::Degenerate { .. }
                 | Status::IterationLimit
                 | Status::EvaluationLimit
                 | Status::TimeLimit

@@ -46,6 +46,18 @@ fn cases() -> Vec<Case> {
         truth: case::Truth::Stationary,
         nlp: Box::new(problems::truss::Truss::new(columns, rows)),
     }));
+    for units in problems::sized_truss::UNITS {
+        all.extend(
+            problems::sized_truss::trusses()
+                .into_iter()
+                .map(|truss| case::Case {
+                    group: "sizing",
+                    name: format!("{} in {}", truss.name, units.name),
+                    truth: case::Truth::Stationary,
+                    nlp: Box::new(truss.in_units(units)),
+                }),
+        );
+    }
     all
 }
 

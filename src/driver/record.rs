@@ -41,6 +41,17 @@ pub(super) fn verdict(status: &Status) -> (&'static str, String) {
             let text = format!("values and gradients disagree: {what}");
             ("inconsistent", text)
         }
+        Status::Degenerate { constraint } => (
+            "degenerate",
+            format!(
+                "the derivatives of \"{constraint}\" vanish where it holds, so no multipliers exist; \
+                 the best design that was found is kept"
+            ),
+        ),
+        Status::Panicked { what } => (
+            "panicked",
+            format!("an evaluation panicked ({what}); the best design so far is kept"),
+        ),
         Status::Stalled => (
             "stalled",
             "no further progress; the best design that was found is kept".into(),

@@ -4,9 +4,9 @@
 use nalgebra::DVector;
 
 use crate::optimiser::ending::{Claim, FinalIterate};
-use crate::optimiser::multipliers::user_multipliers;
+use crate::optimiser::multipliers::{ScaledMultipliers, user_multipliers};
 use crate::optimiser::outcome::Status;
-use crate::optimiser::program::{Point, Program};
+use crate::optimiser::program::{Derivatives, Point, Program};
 
 /// Distance from the first point, relative to its size, beyond which a solution is doubted, and how
 /// often this distance is then doubled.
@@ -60,39 +60,59 @@ const NEARBY: f64 = 1e-6;
 /// Share of a derivative by which it must differ from a difference to be doubted.
 const DOUBTED: f64 = 0.5;
 
-/// A solution is no solution if the multiplier of a row is huge and the derivative of this row
-/// changes by its own size nearby. Then the derivative vanishes, as that of x² = 0 does at x = 0,
-/// and no multipliers exist. A multiplier is huge if a violation within the tolerance changes the
-/// objective by its own size.
+/// Change of the objective by a violation within the tolerance, relative to max(1, |f|), from which
+/// the multiplier of a row counts as huge.
+const HUGE: f64 = 1e-3;
+
+/// The row without which no multipliers exist: its multiplier is huge, and its derivative changes
+/// by its own size within the allowed violation. Then the derivative vanishes where the row holds,
+/// as that of x² = 0 does at x = 0.
+pub(crate) fn degenerate_row(
+    program: &mut Program<'_>,
+    point: &Point,
+    slopes: &Derivatives,
+    multipliers: &ScaledMultipliers,
+) -> Option<usize> {
+    let y = user_multipliers(program, slopes, multipliers).constraints;
+    let rows = 0..program.rows.len();
+    let steep = |k: &usize| y[program.rows[*k]].abs();
+    let k = rows.max_by(|a, b| steep(a).total_cmp(&steep(b)))?;
+    let f = (point.f / program.scaling.objective).abs().max(1.0);
+    if steep(&k) * program.options.constraint_tolerance <= HUGE * f {
+        return None;
+    }
+    let x = &point.x;
+    let steepness: f64 = slopes.a.row(k).map(|(_, v)| v.abs()).sum();
+    let length = (NEARBY * x.amax().max(1.0)).min(program.allowed(k) / steepness);
+    let along = |length: f64| {
+        let mut moved = x.clone();
+        for (i, slope) in slopes.a.row(k) {
+            moved[i] = (x[i] + length * slope.signum()).clamp(program.lower[i], program.upper[i]);
+        }
+        let expected = slopes.a.row_dot(k, &(&moved - x));
+        (moved, expected)
+    };
+    // The way that bounds block less.
+    let (up, down) = (along(length), along(-length));
+    let (moved, expected) = if up.1 >= -down.1 { up } else { down };
+    let trial = program.evaluate(&moved).ok()?;
+    let change = trial.c[k] - point.c[k];
+    let rounding = 10.0 * f64::EPSILON * trial.c[k].abs().max(point.c[k].abs());
+    let bent = (change - expected).abs() > DOUBTED * expected.abs() + rounding;
+    bent.then_some(program.rows[k])
+}
+
+/// No solution has a degenerate row.
 fn unless_multipliers_fail(program: &mut Program<'_>, mut finish: FinalIterate) -> FinalIterate {
     if !(finish.status == Status::Converged || finish.is_solved(program)) {
         return finish;
     }
-    let y = user_multipliers(program, &finish.slopes, &finish.multipliers).constraints;
-    let rows = 0..program.rows.len();
-    let steep = |k: &usize| y[program.rows[*k]].abs();
-    let Some(k) = rows.max_by(|a, b| steep(a).total_cmp(&steep(b))) else {
-        return finish;
-    };
-    let f = (finish.point.f / program.scaling.objective).abs().max(1.0);
-    if steep(&k) * program.options.constraint_tolerance <= f {
-        return finish;
-    }
-    let x = &finish.point.x;
-    let length = NEARBY * x.amax().max(1.0);
-    let mut moved = x.clone();
-    for (i, slope) in finish.slopes.a.row(k) {
-        moved[i] = (x[i] + length * slope.signum()).clamp(program.lower[i], program.upper[i]);
-    }
-    let expected = finish.slopes.a.row_dot(k, &(&moved - x));
-    let Ok(trial) = program.evaluate(&moved) else {
-        return finish;
-    };
-    let change = trial.c[k] - finish.point.c[k];
-    let rounding = 10.0 * f64::EPSILON * trial.c[k].abs().max(finish.point.c[k].abs());
-    if (change - expected).abs() > DOUBTED * expected.abs() + rounding {
+    let (point, slopes) = (&finish.point, &finish.slopes);
+    if let Some(j) = degenerate_row(program, point, slopes, &finish.multipliers) {
         finish.claim = Claim::Refuted;
-        finish.status = Status::Stalled;
+        finish.status = Status::Degenerate {
+            constraint: program.constraint_name(j),
+        };
     }
     finish
 }
@@ -107,11 +127,8 @@ const AGREE: f64 = 0.1;
 /// what convergence and rounding leave, and so does their ratio.
 const OF_GRADIENT: f64 = 1e-3;
 
-/// A run without a solution becomes [`Status::Inconsistent`] if the derivative of a function along
-/// one direction differs from its central differences. These must agree for two steps, and the
-/// differences to either side must come nearer to each other with the step: then the function is
-/// smooth here. A run at a limit is not tested: with a higher limit it must go on as if it had not
-/// ended.
+/// A run without a solution becomes [`Status::Inconsistent`] if its gradients are wrong. A run at a
+/// limit is not tested: with a higher limit it must go on as if it had not ended.
 fn unless_gradients_are_wrong(program: &mut Program<'_>, mut finish: FinalIterate) -> FinalIterate {
     let undecided = matches!(
         finish.status,
@@ -120,7 +137,20 @@ fn unless_gradients_are_wrong(program: &mut Program<'_>, mut finish: FinalIterat
     if !undecided || finish.claim == Claim::Refuted || finish.is_solved(program) {
         return finish;
     }
-    let at = &finish.point;
+    if let Some(what) = wrong_gradients(program, &finish.point, &finish.slopes) {
+        finish.status = Status::Inconsistent { what };
+    }
+    finish
+}
+
+/// What is wrong with the derivatives at a point: the derivative of a function along one direction
+/// differs from its central differences. These must agree for two steps, and the differences to
+/// either side must come nearer to each other with the step: then the function is smooth here.
+pub(crate) fn wrong_gradients(
+    program: &mut Program<'_>,
+    at: &Point,
+    slopes: &Derivatives,
+) -> Option<String> {
     let size = at.x.amax().max(1.0);
     let direction = DVector::from_fn(at.x.len(), |i, _| {
         let room = (at.x[i] - program.lower[i]).min(program.upper[i] - at.x[i]);
@@ -138,7 +168,7 @@ fn unless_gradients_are_wrong(program: &mut Program<'_>, mut finish: FinalIterat
         let ahead = program.evaluate(&(&at.x + &direction * length));
         let behind = program.evaluate(&(&at.x - &direction * length));
         let (Ok(ahead), Ok(behind)) = (ahead, behind) else {
-            return finish;
+            return None;
         };
         differences.push([ahead, behind]);
     }
@@ -159,26 +189,24 @@ fn unless_gradients_are_wrong(program: &mut Program<'_>, mut finish: FinalIterat
         (wrong && smooth && (coarse - fine).abs() <= AGREE * gap).then_some(fine)
     };
     let unit = program.scaling.objective;
-    let slope = finish.slopes.g.dot(&direction);
-    let objective = disagrees(&|p| p.f, slope, finish.slopes.g.amax())
+    let slope = slopes.g.dot(&direction);
+    let objective = disagrees(&|p| p.f, slope, slopes.g.amax())
         .map(|fine| ("the objective".into(), slope / unit, fine / unit));
     let row = |k: usize| {
         let j = program.rows[k];
         let (unit, slope) = (
             program.scaling.constraints[j],
-            finish.slopes.a.row_dot(k, &direction),
+            slopes.a.row_dot(k, &direction),
         );
-        let fine = disagrees(&|p| p.c[k], slope, finish.slopes.a.row_amax(k))?;
+        let fine = disagrees(&|p| p.c[k], slope, slopes.a.row_amax(k))?;
         Some((program.constraint_name(j), slope / unit, fine / unit))
     };
     let found = objective.or_else(|| (0..program.rows.len()).find_map(row));
-    if let Some((name, slope, fine)) = found {
-        let what = format!(
+    found.map(|(name, slope, fine)| {
+        format!(
             "along one direction the slope of {name} is {fine:.4e} by values and {slope:.4e} by gradients"
-        );
-        finish.status = Status::Inconsistent { what };
-    }
-    finish
+        )
+    })
 }
 
 /// The final iterate after all checks.

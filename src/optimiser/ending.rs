@@ -8,6 +8,7 @@ use crate::optimiser::convergence::{
 };
 use crate::optimiser::linear::quasi_newton::QuasiNewton;
 use crate::optimiser::multipliers::ScaledMultipliers;
+use crate::optimiser::options::Method;
 use crate::optimiser::outcome::{Kkt, Status};
 use crate::optimiser::program::{Derivatives, EarlyExit, Point, Program};
 use crate::optimiser::scaling::Units;
@@ -45,6 +46,7 @@ pub(crate) enum Claim {
 /// The final iterate of a method.
 pub(crate) struct FinalIterate {
     pub status: Status,
+    pub method: Method,
     pub point: Point,
     pub slopes: Derivatives,
     pub multipliers: ScaledMultipliers,
@@ -242,6 +244,7 @@ pub(crate) fn unfinished(program: &Program<'_>, point: Point, slopes: Derivative
     let options = program.options;
     FinalIterate {
         status: Status::Interrupted,
+        method: program.first_method(),
         b: QuasiNewton::new(point.x.len(), options.dense_limit, options.memory),
         scaled: scaled_residual(program, &point, &slopes, &multipliers),
         claim: Claim::Untested,

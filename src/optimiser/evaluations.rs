@@ -1,6 +1,7 @@
 //! Evaluations of the scaled program. They are counted, checked and limited, and every failure is
 //! recorded.
 
+use std::panic::{AssertUnwindSafe, catch_unwind};
 use std::time::Instant;
 
 use nalgebra::DVector;
@@ -16,13 +17,21 @@ use crate::optimiser::program::{Derivatives, EarlyExit, Point, Program};
 /// Largest number of recorded designs with a failed evaluation.
 const FAILED_DESIGNS_KEPT: usize = 100;
 
+/// A method ends after so many failures in succession. A step that was halved as often is lost in
+/// the tolerances: the point lies at the edge of the region where the functions are defined, or
+/// they fail for good.
+const MOST_FAILURES: usize = 24;
+
+/// It also ends after so many failures if they are most of its evaluations: it follows the edge.
+const AT_THE_EDGE: usize = 60;
+
 impl Program<'_> {
     /// Values of the scaled functions at `x`.
     pub(crate) fn evaluate(&mut self, x: &DVector<f64>) -> Result<Point, EarlyExit> {
         self.check_limits()?;
         let full = self.to_user(x);
         let clock = Instant::now();
-        let mut result = self.nlp.evaluate(&full);
+        let mut result = unless_panicked(|| self.nlp.evaluate(&full))?;
         self.counts.evaluation_seconds += clock.elapsed().as_secs_f64();
         self.counts.evaluations += 1;
         if let Ok(e) = &result
@@ -40,6 +49,7 @@ impl Program<'_> {
             objective,
             constraints,
         } = result.map_err(|failure| self.record(full, failure))?;
+        self.failures_in_succession = 0;
         let c = self
             .rows
             .iter()
@@ -62,9 +72,10 @@ impl Program<'_> {
 
     /// Derivatives of the scaled functions at `x`.
     pub(crate) fn gradients(&mut self, x: &DVector<f64>) -> Result<Derivatives, EarlyExit> {
+        self.unless_it_fails_for_good()?;
         let full = self.to_user(x);
         let clock = Instant::now();
-        let mut result = self.nlp.gradients(&full);
+        let mut result = unless_panicked(|| self.nlp.gradients(&full))?;
         self.counts.evaluation_seconds += clock.elapsed().as_secs_f64();
         self.counts.gradients += 1;
         if let Ok(g) = &result
@@ -82,6 +93,7 @@ impl Program<'_> {
             objective,
             jacobian,
         } = result.map_err(|failure| self.record(full.clone(), failure))?;
+        self.failures_in_succession = 0;
         let (free, rows, scaling) = (&self.free, &self.rows, &self.scaling);
         let g = free
             .iter()
@@ -149,6 +161,7 @@ impl Program<'_> {
 
     fn record(&mut self, x: Vec<f64>, failure: EvaluationFailure) -> EarlyExit {
         self.counts.failures += 1;
+        self.failures_in_succession += 1;
         if self.failed.len() < FAILED_DESIGNS_KEPT {
             self.failed.push(FailedDesign {
                 x,
@@ -158,15 +171,42 @@ impl Program<'_> {
         EarlyExit::Failed(failure)
     }
 
+    /// Lets the next method meet failures of its own.
+    pub(crate) fn forgive_failures(&mut self) {
+        self.failures_in_succession = 0;
+        self.forgiven = self.counts;
+    }
+
+    fn unless_it_fails_for_good(&self) -> Result<(), EarlyExit> {
+        let failures = self.counts.failures - self.forgiven.failures;
+        let evaluations = self.counts.evaluations - self.forgiven.evaluations;
+        let mostly = failures > AT_THE_EDGE && 3 * failures > 2 * evaluations;
+        match self.failures_in_succession >= MOST_FAILURES || mostly {
+            true => Err(EarlyExit::Halt(Status::Stalled)),
+            false => Ok(()),
+        }
+    }
+
     pub(super) fn check_limits(&self) -> Result<(), EarlyExit> {
         if self.counts.evaluations >= self.allowed.evaluations {
             return Err(EarlyExit::Halt(Status::EvaluationLimit));
         }
+        self.unless_it_fails_for_good()?;
         match self.options.max_seconds {
             Some(limit) if self.seconds() >= limit => Err(EarlyExit::Halt(Status::TimeLimit)),
             _ => Ok(()),
         }
     }
+}
+
+/// The result of `call`, or the end of the run if it panics.
+pub(super) fn unless_panicked<T>(call: impl FnOnce() -> T) -> Result<T, EarlyExit> {
+    catch_unwind(AssertUnwindSafe(call)).map_err(|panic| {
+        let text = panic.downcast_ref::<String>().map(String::as_str);
+        let text = text.or_else(|| panic.downcast_ref::<&str>().copied());
+        let what = text.unwrap_or("a message that is no text").into();
+        EarlyExit::Halt(Status::Panicked { what })
+    })
 }
 
 /// Sets derivatives to zero that are rounding errors. Over the `reach` of its variable such a

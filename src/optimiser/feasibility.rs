@@ -33,6 +33,14 @@ impl Program<'_> {
         tolerance.min(PART_OF_ROW * self.row_sizes[j])
     }
 
+    /// Allowed violation of scaled row `k`, or a small part of its bounds if that is less.
+    pub(crate) fn allowed(&self, k: usize) -> f64 {
+        let allowed = self.allowed_violation(self.rows[k]) * self.scaling.constraints[self.rows[k]];
+        let bounds = [self.row_lower[k], self.row_upper[k]].map(f64::abs);
+        let sizes = bounds.into_iter().filter(|b| b.is_finite() && *b > 0.0);
+        sizes.fold(allowed, |least, b| least.min(PART_OF_ROW * b))
+    }
+
     /// The smallest allowed violation of all rows, in the units of the user.
     pub(crate) fn least_allowed(&self) -> f64 {
         let rows = self.rows.iter();

@@ -49,7 +49,8 @@ pub struct Options {
     /// An objective f that changes by this part of max(1, |f|) from the first point to a feasible one
     /// is called unbounded (default −1e20).
     pub unbounded_below: f64,
-    /// A larger gradient at the start is scaled (default 100).
+    /// Size to which the gradients of objective and equalities at the start are scaled, for a change
+    /// of the variables by the size of the start (default 2).
     pub scaling_gradient: f64,
     /// Divide each variable that has two bounds by their distance (default false).
     pub scale_variables: bool,
@@ -87,7 +88,7 @@ impl Default for Options {
             max_evaluations: 3000,
             max_seconds: None,
             unbounded_below: -1e20,
-            scaling_gradient: 100.0,
+            scaling_gradient: 2.0,
             scale_variables: false,
             barrier: Barrier::default(),
             initial_barrier: 0.1,

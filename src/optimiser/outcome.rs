@@ -2,6 +2,7 @@
 
 use serde::{Deserialize, Serialize};
 
+use crate::optimiser::options::Method;
 use crate::optimiser::state::{Multipliers, SavedState, Scaling};
 
 /// How a run ended.
@@ -40,6 +41,17 @@ pub enum Status {
     /// Values and gradients disagree where the run could not go on.
     Inconsistent {
         /// Which function, and its slopes by values and by gradients.
+        what: String,
+    },
+    /// The derivatives of a row vanish where it holds, as those of x² = 0 do: the point may be
+    /// optimal, but no multipliers exist.
+    Degenerate {
+        /// Name of the row.
+        constraint: String,
+    },
+    /// An evaluation panicked.
+    Panicked {
+        /// Its message.
         what: String,
     },
     /// No step makes progress although the conditions are violated. The best point is returned.
@@ -132,6 +144,8 @@ pub enum BoundSide {
 pub struct Outcome {
     /// How the run ended.
     pub status: Status,
+    /// The method that found this end; of both methods of [`Method::Auto`] one.
+    pub method: Method,
     /// The best point.
     pub x: Vec<f64>,
     /// Objective there.

@@ -8,7 +8,7 @@ use nalgebra::DVector;
 use crate::optimiser::linear::jacobian::Jacobian;
 use crate::optimiser::nlp::{EvaluationFailure, Nlp};
 use crate::optimiser::observer::{Observer, Phase, Row};
-use crate::optimiser::options::Options;
+use crate::optimiser::options::{Method, Options};
 use crate::optimiser::outcome::{Counts, FailedDesign, Status};
 use crate::optimiser::state::Scaling;
 
@@ -99,6 +99,10 @@ pub(crate) struct Program<'a> {
     pub length: f64,
     pub counts: Counts,
     pub failed: Vec<FailedDesign>,
+    /// Evaluations that failed since the last one that did not.
+    pub(super) failures_in_succession: usize,
+    /// The work done when failures were forgiven.
+    pub(super) forgiven: Counts,
     started: Instant,
     /// One unit of each variable of `nlp`, in the unit in which forces on it are judged. That is
     /// the unit of the user, or a smaller one if both the scale and the start of the variable are
@@ -180,6 +184,8 @@ impl<'a> Program<'a> {
             length: 1.0,
             counts: Counts::default(),
             failed: Vec::new(),
+            failures_in_succession: 0,
+            forgiven: Counts::default(),
             started: Instant::now(),
             units_judged,
             gradient_norms: Vec::new(),
@@ -226,12 +232,12 @@ impl<'a> Program<'a> {
         self.started.elapsed().as_secs_f64()
     }
 
-    /// Allows the running method the part `share` of all iterations and evaluations.
-    pub(crate) fn set_budget(&mut self, share: f64) {
-        let part = |all: usize| (share * all as f64).ceil() as usize;
+    /// Allows the running method these shares of all iterations and evaluations.
+    pub(crate) fn set_budget(&mut self, iterations: f64, evaluations: f64) {
+        let part = |share: f64, all: usize| (share * all as f64).ceil() as usize;
         self.allowed = Allowed {
-            iterations: part(self.options.max_iterations),
-            evaluations: part(self.options.max_evaluations),
+            iterations: part(iterations, self.options.max_iterations),
+            evaluations: part(evaluations, self.options.max_evaluations),
         };
     }
 
@@ -253,6 +259,14 @@ impl<'a> Program<'a> {
     /// Name of constraint `j` of the user.
     pub(crate) fn constraint_name(&self, j: usize) -> String {
         self.nlp.constraint_name(j)
+    }
+
+    /// The method that runs first.
+    pub(crate) fn first_method(&self) -> Method {
+        match self.options.method {
+            Method::TrustRegion => Method::TrustRegion,
+            Method::InteriorPoint | Method::Auto => Method::InteriorPoint,
+        }
     }
 
     /// The program of the user.

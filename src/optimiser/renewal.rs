@@ -1,5 +1,6 @@
 //! Restart of a stalled method, in units that suit the point where it stalled.
 
+use crate::optimiser::doubts::degenerate_row;
 use crate::optimiser::ending::FinalIterate;
 use crate::optimiser::outcome::Status;
 use crate::optimiser::program::{Derivatives, EarlyExit, Point, Program};
@@ -18,6 +19,13 @@ pub(crate) fn renewed(
     let norms = program.gradient_norms.clone();
     for _ in 0..RENEWALS {
         if finish.status != Status::Stalled || finish.is_solved(program) {
+            return finish;
+        }
+        let z = &finish.multipliers;
+        if let Some(j) = degenerate_row(program, &finish.point, &finish.slopes, z) {
+            finish.status = Status::Degenerate {
+                constraint: program.constraint_name(j),
+            };
             return finish;
         }
         let is_feasible = |p: &Point| program.is_feasible(&p.c);

@@ -4,6 +4,7 @@ use crate::optimiser::convergence::unit_of_forces;
 use crate::optimiser::ending::FinalIterate;
 use crate::optimiser::multipliers::user_multipliers;
 use crate::optimiser::nlp::Nlp;
+use crate::optimiser::options::Method;
 use crate::optimiser::outcome::{ActiveBound, BoundSide, Counts, Kkt, Outcome, Status};
 use crate::optimiser::program::{Derivatives, Program};
 use crate::optimiser::state::{SavedState, Scaling};
@@ -29,6 +30,7 @@ pub(crate) fn outcome(program: &Program<'_>, finish: FinalIterate, state: SavedS
     let solved = finish.is_solved(program);
     let FinalIterate {
         mut status,
+        method,
         point,
         slopes,
         multipliers,
@@ -64,6 +66,7 @@ pub(crate) fn outcome(program: &Program<'_>, finish: FinalIterate, state: SavedS
     counts.seconds = program.seconds();
     Outcome {
         status,
+        method,
         objective: point.f / program.scaling.objective,
         active_bounds: active(&x, (&lower, &upper), of_bound, (|_| 1.0, gradient), |i| {
             nlp.variable_name(i)
@@ -102,6 +105,7 @@ pub(crate) fn without_values(program: &Program<'_>, status: Status) -> Outcome {
 pub(crate) fn untried(nlp: &dyn Nlp, status: Status) -> Outcome {
     Outcome {
         status,
+        method: Method::default(),
         x: nlp.start(),
         objective: f64::NAN,
         constraints: vec![f64::NAN; nlp.constraints()],

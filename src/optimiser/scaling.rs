@@ -5,21 +5,25 @@ use std::time::Instant;
 
 use nalgebra::DVector;
 
+use crate::optimiser::evaluations::unless_panicked;
 use crate::optimiser::linear::curvature::Curvature;
 use crate::optimiser::outcome::Status;
 use crate::optimiser::program::{Derivatives, EarlyExit, Point, Program};
 use crate::optimiser::state::Scaling;
 
-/// An objective whose gradient at the start is below `FLAT` is multiplied until the gradient is
-/// `LIFTED`. Otherwise a start on a plateau would pass for a solution.
-const FLAT: f64 = 1.0;
-const LIFTED: f64 = 1.0;
+/// Largest factor of a function. A gradient that is smaller by this factor is rounding.
 const LARGEST_LIFT: f64 = 1e12;
+
+/// A row whose violation exceeds its gradient by this factor is flat: steps of so many sizes of the
+/// start would lead nowhere.
+const FLAT_ROW: f64 = 1e4;
 
 /// Least factor by which a scale is changed during a run.
 const WORTHWHILE: f64 = 10.0;
 
-/// A restart keeps the units of the variables if the size of the point is between these.
+/// A restart keeps the units of the variables if the size of the point is between these, or so
+/// small that the point is zero.
+const ZERO: f64 = 1e-8;
 const NEAR_ONE: RangeInclusive<f64> = 1e-3..=1e3;
 
 /// Number of first points of a run.
@@ -39,24 +43,28 @@ pub(crate) struct Units {
 
 impl Program<'_> {
     /// Sets the scale factors of the functions from the derivatives `slopes`, and converts point
-    /// and slopes.
+    /// and slopes. No factor depends on a unit of the user: the gradients of objective and
+    /// equalities get the size `scaling_gradient`, inequalities a gradient and bounds of at most
+    /// one. Their slacks start with multipliers of one, and at distances of a hundred these would
+    /// outweigh the objective in the filter.
     pub(crate) fn scale(&mut self, point: &mut Point, slopes: &mut Derivatives) {
-        let limit = self.options.scaling_gradient;
-        let mut units = self.units();
-        let norm = slopes.g.amax() / self.scaling.objective;
-        units.objective = if norm > limit {
-            limit / norm
-        } else if norm > 0.0 && norm < FLAT {
-            (LIFTED / norm).min(LARGEST_LIFT)
-        } else {
-            1.0
+        let wanted = self.options.scaling_gradient;
+        let factor = |wanted: f64, size: f64| match size > 0.0 {
+            true => (wanted / size).min(LARGEST_LIFT),
+            false => 1.0,
         };
+        let mut units = self.units();
+        units.objective = factor(wanted, slopes.g.amax() / self.scaling.objective);
         for (k, &j) in self.rows.iter().enumerate() {
-            let norm = slopes.a.row_amax(k) / self.scaling.constraints[j];
-            units.constraints[j] = if norm > limit {
-                (limit / norm).max(1e-8)
+            let violation = self.row_violation(&point.c, k);
+            let norm = slopes.a.row_amax(k).max(violation / FLAT_ROW);
+            let norm = norm / self.scaling.constraints[j];
+            let bounds = [self.user_row_lower[j], self.user_row_upper[j]];
+            units.constraints[j] = if bounds[0] < bounds[1] {
+                let finite = bounds.iter().filter(|b| b.is_finite());
+                factor(1.0, finite.fold(norm, |size, b| size.max(b.abs())))
             } else {
-                1.0
+                factor(wanted, norm)
             };
         }
         self.change_units(&units, point, slopes);
@@ -122,6 +130,16 @@ impl Program<'_> {
         }
     }
 
+    /// Makes the size of the start the unit of the variables, so that theirs does not matter.
+    pub(crate) fn measure_start(&mut self) {
+        let size = self.start().amax();
+        if size > 0.0 {
+            let mut units = self.units();
+            units.length *= size;
+            self.set_units(&units);
+        }
+    }
+
     /// Changes to `units`, with bounds and the best point. The caller converts the current point.
     pub(crate) fn set_units(&mut self, units: &Units) {
         self.rescale(units.objective / self.scaling.objective);
@@ -171,7 +189,7 @@ impl Program<'_> {
     /// derivatives are forgotten. Returns the point and its derivatives in these units.
     pub(crate) fn renew(&mut self, mut point: Point) -> Result<(Point, Derivatives), EarlyExit> {
         let size = point.x.amax();
-        if size > 0.0 && !NEAR_ONE.contains(&size) {
+        if size > ZERO && !NEAR_ONE.contains(&size) {
             let mut units = self.units();
             units.length *= size;
             self.set_units(&units);
@@ -196,7 +214,7 @@ impl Program<'_> {
             user[j] = y[k] * self.scaling.constraints[j] / unit_f;
         }
         let clock = Instant::now();
-        let found = self.nlp.curvature(&full, &user);
+        let found = unless_panicked(|| self.nlp.curvature(&full, &user))?;
         self.counts.evaluation_seconds += clock.elapsed().as_secs_f64();
         let Some(found) = found else {
             return Ok(None);

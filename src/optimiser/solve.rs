@@ -3,8 +3,8 @@
 use nalgebra::DVector;
 
 use crate::optimiser::convergence::scaled_residual;
-use crate::optimiser::doubts::doubted;
-use crate::optimiser::ending::{FinalIterate, best_of, unfinished, without_freedom};
+use crate::optimiser::doubts::{doubted, wrong_gradients};
+use crate::optimiser::ending::{Claim, FinalIterate, best_of, unfinished, without_freedom};
 use crate::optimiser::interior_point::run::{RESUMED_PUSH, interior_point};
 use crate::optimiser::least_violation::least_violation;
 use crate::optimiser::multipliers::ScaledMultipliers;
@@ -14,15 +14,16 @@ use crate::optimiser::options::{Method, Options};
 use crate::optimiser::outcome::{Outcome, Status};
 use crate::optimiser::program::{Derivatives, EarlyExit, Point, Program, Progress};
 use crate::optimiser::report::{outcome, state_of, untried, without_values};
-use crate::optimiser::start::{Neighbourhood, first_point, look_around};
+use crate::optimiser::start::{Neighbourhood, first_point, left_start, look_around};
 use crate::optimiser::state::SavedState;
 use crate::optimiser::trust_region::run::trust_region;
 use crate::optimiser::well_posed;
 
-/// Shares of iterations and evaluations at which [`Method::Auto`] changes: from the interior point
-/// to the trust region from its best point, then to the trust region from the start.
-const FIRST_SHARE: f64 = 0.75;
-const SECOND_SHARE: f64 = 0.9;
+/// Shares of iterations and evaluations after which [`Method::Auto`] changes from the interior point
+/// to the trust region. A run that needs as much is likely to need all, and one with three
+/// evaluations an iteration crawls.
+const FIRST_ITERATIONS: f64 = 0.7;
+const FIRST_EVALUATIONS: f64 = 0.35;
 
 /// How often a run continues from a point near one that seems infeasible.
 const ESCAPES: usize = 3;
@@ -99,6 +100,9 @@ fn run(
     if let Some(saved) = saved {
         program.start_from(&saved.x);
     }
+    if saved.is_none() {
+        program.measure_start();
+    }
     let push = if saved.is_some() {
         RESUMED_PUSH
     } else {
@@ -147,6 +151,7 @@ fn run(
         }
     };
     let state = state_of(&program, &finish);
+    program.forgive_failures();
     let finish = best_of(&mut program, finish);
     let finish = doubted(&mut program, finish);
     outcome(&program, finish, state)
@@ -166,6 +171,18 @@ fn attempt(
         Method::InteriorPoint | Method::Auto => interior_point(program, point, slopes, saved, push),
     };
     let mut finish = run(program, first, saved);
+    if saved.is_none() && program.counts.iterations == 0 && finish.is_solved(program) {
+        finish = match left_start(program, &finish.point) {
+            Some(next) => run(program, next, None),
+            None => finish,
+        };
+        if program.counts.iterations == 0
+            && let Some(what) = wrong_gradients(program, &finish.point, &finish.slopes)
+        {
+            finish.status = Status::Inconsistent { what };
+            finish.claim = Claim::Refuted;
+        }
+    }
     for _ in 0..ESCAPES {
         if !matches!(finish.status, Status::Infeasible { .. }) {
             break;
@@ -215,19 +232,20 @@ fn attempt(
     finish
 }
 
-/// The interior point within its share of the work. If it does not converge, the trust region from
-/// the best point so far, then from the start.
+/// The interior point with a part of the work. If it ends without a solution, the trust region from
+/// the start, or from the best point if the start led nowhere and work is left. The better end
+/// counts, and the outcome names its method.
 fn auto(
     program: &mut Program<'_>,
     first: (Point, Derivatives),
     saved: Option<&SavedState>,
     push: f64,
 ) -> FinalIterate {
-    program.set_budget(FIRST_SHARE);
+    program.set_budget(FIRST_ITERATIONS, FIRST_EVALUATIONS);
     let (start, units) = (first.clone(), program.units());
     let mut kept = attempt(program, Method::InteriorPoint, first, saved, push);
-    program.set_budget(1.0);
-    for (from_best, share) in [(true, SECOND_SHARE), (false, 1.0)] {
+    program.set_budget(1.0, 1.0);
+    for from_best in [false, true] {
         let hopeless = matches!(
             kept.status,
             Status::Stalled
@@ -242,17 +260,17 @@ fn auto(
         }
         // At the best point the rows cannot be improved.
         if from_best && matches!(kept.status, Status::Infeasible { .. }) {
-            continue;
+            break;
         }
         program.set_units(&units);
+        program.forgive_failures();
         let place = match program.best.clone().filter(|_| from_best) {
             None => start.clone(),
             Some(best) => match program.gradients(&best.x) {
                 Ok(slopes) => (best, slopes),
-                Err(_) => continue,
+                Err(_) => break,
             },
         };
-        program.set_budget(share);
         let next = attempt(program, Method::TrustRegion, place, None, push);
         // A verdict is preferred to none. Without a verdict the better point is kept.
         let undecided = matches!(

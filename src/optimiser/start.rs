@@ -20,6 +20,9 @@ const REACHES: [f64; 7] = [0.2, 1.0, 5.0, 0.5, 50.0, 500.0, 1e-3];
 const LESS: f64 = 1e-6;
 const UNCHANGED: f64 = 1e-12;
 
+/// Distance, relative to the size of a start, at which a start that seems solved is doubted.
+const ASIDE: f64 = 1e-2;
+
 /// Evaluates the start, moved into the interior of the bounds, or points near it.
 pub(crate) fn first_point(
     program: &mut Program<'_>,
@@ -91,6 +94,22 @@ pub(crate) fn look_around(
     } else {
         Neighbourhood::More
     })
+}
+
+/// A feasible point near a start that seems solved at which the objective is lower: the start is a
+/// maximum or a saddle, or its gradients are wrong.
+pub(crate) fn left_start(program: &mut Program<'_>, at: &Point) -> Option<(Point, Derivatives)> {
+    let push = program.options.bound_push;
+    let lost = program.options.tolerance * at.f.abs();
+    for trial in 1..=2 {
+        let x = perturbed(program, &at.x, trial, push, ASIDE);
+        let point = program.evaluate(&x).ok()?;
+        if point.f < at.f - lost && program.is_feasible(&point.c) {
+            let slopes = program.gradients(&x).ok()?;
+            return Some((point, slopes));
+        }
+    }
+    None
 }
 
 /// The start for `trial` 0, then points in changing directions. Their distance is up to the part

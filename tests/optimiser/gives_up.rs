@@ -33,6 +33,7 @@ struct Liar {
     inner: Problem,
     lie: Lie,
     calls: usize,
+    /// Least objective of the feasible points whose gradients were known.
     least: f64,
 }
 
@@ -67,7 +68,10 @@ impl Nlp for Liar {
                 });
             }
             Lie::FailFrom(_) => {
-                self.least = self.least.min(self.inner.evaluate(x)?.objective);
+                let values = self.inner.evaluate(x)?;
+                if values.constraints[0] >= 0.0 {
+                    self.least = self.least.min(values.objective);
+                }
             }
             Lie::ShortConstraints => {}
         }
@@ -116,7 +120,12 @@ fn the_best_point_is_kept_when_gradients_fail_for_good() {
             let outcome = run(&mut nlp, method);
             let context = format!("{method:?} {call}: {:?}", outcome.status);
             assert!(!outcome.converged(), "{context}");
-            assert!(outcome.objective <= nlp.least, "{context}");
+            let (found, least) = (outcome.objective, nlp.least);
+            // Units of the variables may change the last digit.
+            assert!(
+                found <= least * (1.0 + 1e-14),
+                "{context}: {found} and {least}"
+            );
             assert!(outcome.counts.evaluations < 600, "{context}");
         }
     }

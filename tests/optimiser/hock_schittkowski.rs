@@ -143,7 +143,7 @@ fn interior_point_finds_the_known_optima() {
 fn trust_region_finds_the_known_optima() {
     let demand = Demand {
         solved: 90,
-        median_evaluations: 10,
+        median_evaluations: 11,
         median_gradients: 10,
     };
     check(Method::TrustRegion, &demand);

@@ -50,6 +50,11 @@ impl BarrierRule {
         }
     }
 
+    /// μ_min.
+    pub(crate) fn least(&self) -> f64 {
+        self.least
+    }
+
     /// Whether μ can fall no further.
     pub(crate) fn is_least(&self) -> bool {
         self.mu <= self.least

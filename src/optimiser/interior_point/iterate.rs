@@ -4,6 +4,7 @@ use nalgebra::{Cholesky, DVector, Dyn};
 
 use crate::optimiser::linear::jacobian::Jacobian;
 use crate::optimiser::linear::kkt_sparse::SparseKkt;
+use crate::optimiser::linear::quasi_newton::Separable;
 use crate::optimiser::program::{Derivatives, Point, Program};
 
 /// Rows, slacks and bounds of the barrier problem.
@@ -217,31 +218,38 @@ impl Iterate {
 
 /// Multipliers of bounds stay within this factor of μ/distance.
 const MULTIPLIER_BAND: f64 = 1e10;
-/// Least variable relative to the largest, and least curvature relative to the mean, in a
-/// reciprocal model. Neither decides: on the bed 1e-3 and 1e-9 give the same.
+/// Least curvature of a reciprocal model relative to the mean. It does not decide: on the bed 1e-3
+/// and 1e-9 give the same.
 const LEAST_SHARE: f64 = 1e-6;
 
 impl Iterate {
-    /// Curvature of the Lagrangian if every function were a sum of terms a/x where it falls with x,
-    /// and of linear terms elsewhere: Σ 2 |∂/∂x|/|x| over the falling parts. So are the compliance
-    /// of a truss and the stresses in its bars, as functions of the areas, as far as forces stay
-    /// (Fleury & Braibant 1986). Empty if nothing falls.
-    pub(crate) fn reciprocal_curvature(&self) -> Vec<f64> {
+    /// The Lagrangian as if every function were a sum of terms a/x where it falls with x, and of
+    /// linear terms elsewhere, after the step `moved`. So are the compliance of a truss and the
+    /// stresses in its bars, as functions of the areas, as far as forces stay (Fleury & Braibant
+    /// 1986). `None` if nothing falls or a variable is not positive.
+    pub(crate) fn reciprocal_model(&self, moved: &DVector<f64>) -> Option<Separable> {
+        let x = &self.point.x;
+        let before = x - moved;
+        if !(x.min() > 0.0 && before.min() > 0.0) {
+            return None;
+        }
         let mut falling = self.slopes.g.map(|g| (-g).max(0.0));
         for k in 0..self.y.len() {
             for (i, slope) in self.slopes.a.row(k) {
                 falling[i] += (-self.y[k] * slope).max(0.0);
             }
         }
-        let x = &self.point.x;
-        let shortest = LEAST_SHARE * x.amax();
-        let curvature = |i: usize| 2.0 * falling[i] / x[i].abs().max(shortest);
+        let curvature = |i: usize| 2.0 * falling[i] / x[i];
         let all = DVector::from_fn(x.len(), |i, _| curvature(i));
         let least = LEAST_SHARE * all.mean();
         if !(least > 0.0 && least.is_finite()) {
-            return Vec::new();
+            return None;
         }
-        all.iter().map(|v| v.max(least)).collect()
+        let change = |i: usize| falling[i] * ((x[i] / before[i]).powi(2) - 1.0);
+        Some(Separable {
+            curvature: all.iter().map(|v| v.max(least)).collect(),
+            change: DVector::from_fn(x.len(), |i, _| change(i)),
+        })
     }
 
     /// Sets the multipliers of the rows by least squares, where these exist.

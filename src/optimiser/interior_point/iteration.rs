@@ -3,6 +3,7 @@
 use nalgebra::DVector;
 
 use crate::optimiser::convergence::{Verdict, is_at_precision, judge};
+use crate::optimiser::doubts::wrong_gradients;
 use crate::optimiser::ending::Ending;
 use crate::optimiser::interior_point::barrier::BarrierRule;
 use crate::optimiser::interior_point::direction::{Direction, NewtonSystem};
@@ -12,7 +13,7 @@ use crate::optimiser::interior_point::line_search::{Accepted, LineSearch, infeas
 use crate::optimiser::linear::quasi_newton::QuasiNewton;
 use crate::optimiser::multipliers::ScaledMultipliers;
 use crate::optimiser::observer::Phase;
-use crate::optimiser::outcome::Counts;
+use crate::optimiser::outcome::{Counts, Status};
 use crate::optimiser::program::{Derivatives, EarlyExit, Point, Program, Progress};
 
 /// Infeasibility below which multipliers of rows are recomputed by least squares.
@@ -35,6 +36,9 @@ const NEARBY: f64 = 1e-8;
 /// Number of successive steps that may gain less than rounding.
 const LOST_STEPS: usize = 4;
 
+/// How often the gradients are tested.
+const MOST_DOUBTS: usize = 2;
+
 /// How often entries may be stiffened in one iteration.
 const STIFFENINGS: usize = 8;
 
@@ -47,6 +51,8 @@ pub(crate) struct InteriorPoint {
     pub(crate) filter: Filter,
     theta_small: f64,
     short_steps: usize,
+    /// How often the gradients were tested.
+    doubts: usize,
     /// A point that the iteration has not left by more than `NEARBY`, and the work done before.
     anchor: (DVector<f64>, Counts),
     /// Variables on which nothing has depended so far. They have no barrier, so they stay.
@@ -77,11 +83,14 @@ impl InteriorPoint {
                 .enumerate()
                 .map(|(k, &j)| layout.push_inside(n + k, point.c[j], push)),
         );
-        let one = |bound: &f64| if bound.is_finite() { 1.0 } else { 0.0 };
+        let (below, above) = layout.distances(&point.x, &s);
+        // Neither a multiplier nor its product with the distance starts above one: bounds far away
+        // would outweigh the objective.
+        let moderate = |d: f64| if d.is_finite() { 1.0 / d.max(1.0) } else { 0.0 };
         let mut at = Iterate {
             y: DVector::zeros(point.c.len()),
-            zl: layout.lower.map(|v| one(&v)),
-            zu: layout.upper.map(|v| one(&v)),
+            zl: below.map(moderate),
+            zu: above.map(moderate),
             point,
             slopes,
             s,
@@ -98,6 +107,7 @@ impl InteriorPoint {
             filter: Filter::new(1e2 * theta.max(1.0)),
             theta_small: 1e-4 * theta.max(1.0),
             short_steps: 0,
+            doubts: 0,
             anchor: (at.point.x.clone(), program.counts),
             idle,
             layout,
@@ -133,7 +143,7 @@ impl InteriorPoint {
             zu: self.at.zu.rows(0, n).into_owned(),
         };
         z.clip(program);
-        if self.barrier.is_least() && self.gap() > self.allowed_gap(program) {
+        if self.is_gap_least() && self.gap() > self.allowed_gap(program) {
             z.release(program, &self.at.point);
         }
         z
@@ -148,6 +158,14 @@ impl InteriorPoint {
     fn allowed_gap(&self, program: &Program<'_>) -> f64 {
         let least = program.unit_of_objective() * program.scaling.objective;
         0.1 * program.options.tolerance * self.at.point.f.abs().max(least)
+    }
+
+    /// Whether the barrier cannot make the gap much smaller: it leaves about μ_min in each product
+    /// of a multiplier and its distance. Where the objective and its unit vanish, as after a start
+    /// that is stationary, no iteration reaches the allowed gap.
+    fn is_gap_least(&self) -> bool {
+        let pairs = self.at.products(&self.layout).len() as f64;
+        self.barrier.is_least() || self.gap() <= 4.0 * self.barrier.least() * pairs
     }
 
     /// Scaled residual of the optimality conditions.
@@ -330,12 +348,8 @@ impl InteriorPoint {
             at.estimate_multipliers(&self.layout);
         }
         let change = &at.slopes.g - &before.g + at.slopes.a.tr_mul(&at.y) - before.a.tr_mul(&at.y);
-        let model = if self.b.is_dense() {
-            Vec::new()
-        } else {
-            at.reciprocal_curvature()
-        };
-        self.b.update_with(moved, change, &model);
+        let model = at.reciprocal_model(&moved);
+        self.b.update_with(moved, change, model);
         self.short_steps = if trials > SHORT_TRIALS {
             self.short_steps + 1
         } else {
@@ -343,6 +357,7 @@ impl InteriorPoint {
         };
         if self.short_steps == 2 {
             self.b.reset();
+            self.doubt_gradients(program)?;
         }
         let progress = Progress {
             optimality: self.optimality(),
@@ -355,6 +370,19 @@ impl InteriorPoint {
             phase: Phase::Regular,
         };
         program.report(&self.at.point, &progress)
+    }
+
+    /// Ends the run if the gradients are wrong here. Values that do not follow their gradients over
+    /// and over again are suspicious, but a curved valley has such values too: a few tests suffice.
+    fn doubt_gradients(&mut self, program: &mut Program<'_>) -> Result<(), EarlyExit> {
+        if self.doubts == MOST_DOUBTS {
+            return Ok(());
+        }
+        self.doubts += 1;
+        match wrong_gradients(program, &self.at.point, &self.at.slopes) {
+            Some(what) => Err(EarlyExit::Halt(Status::Inconsistent { what })),
+            None => Ok(()),
+        }
     }
 
     /// Factor by which the objective should be scaled further, if any.
@@ -374,7 +402,7 @@ impl InteriorPoint {
         if scaled > program.options.tolerance {
             return Verdict::Unsolved;
         }
-        if !self.barrier.is_least() && self.gap() > self.allowed_gap(program) {
+        if !self.is_gap_least() && self.gap() > self.allowed_gap(program) {
             return Verdict::Unsolved;
         }
         let z = self.multipliers(program);

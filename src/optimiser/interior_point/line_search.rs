@@ -20,7 +20,7 @@ const SOFT_VIOLATION: f64 = 1e-4;
 const SOFT_RISE: f64 = 1e-6;
 const SOFT_TRIALS: usize = 5;
 
-/// Least factor by which a refused step is shortened.
+/// Least factor by which a refused step is shortened, and a corrected one may be shorter.
 const SHORTEST: f64 = 0.1;
 
 /// Factor by which a step to undefined functions is shortened, and how many such steps are
@@ -30,9 +30,6 @@ const FORESEEN: i32 = 16;
 
 /// The search ends below this share of the least sensible step.
 const LEAST_STEP: f64 = 0.05;
-/// Second-order corrections tried, and the factor by which each must reduce the infeasibility.
-const CORRECTIONS: usize = 2;
-const CORRECTION_GAIN: f64 = 0.99;
 
 /// Below this sum of scaled residuals a point counts as feasible. The residuals are then mostly
 /// rounding, and the barrier function alone decides.
@@ -157,12 +154,13 @@ impl LineSearch<'_> {
                         trials,
                     }));
                 }
-                Trial::Refused { theta, c, .. } if trials == 1 && theta >= here.theta => {
-                    let start = (alpha, theta, c);
-                    let corrected = self.correct(program, b, filter, &here, start, &mut trials)?;
+                Trial::Refused { theta, c, .. } if trials == 1 && theta > here.theta => {
+                    let refused = (alpha, direction.size(), c);
+                    let corrected = self.correct(program, b, filter, &here, refused)?;
                     if corrected.is_some() {
                         return Ok(corrected);
                     }
+                    trials = 2;
                 }
                 Trial::Refused { .. } => {}
                 Trial::Undefined => self.foresee(program, &direction, alpha),
@@ -302,46 +300,40 @@ impl LineSearch<'_> {
         }
     }
 
-    /// Second-order correction: the rows are linearised about the values at the refused point.
+    /// Second-order correction: the rows are linearised about the values `c` of their residuals at
+    /// the refused point, which a step of length `alpha_test` and of size `size` reaches (Wächter &
+    /// Biegler 2006, section 2.4, with one correction: a second one gains nothing).
     fn correct(
         &self,
         program: &mut Program<'_>,
         b: &mut QuasiNewton,
         filter: &mut Filter,
         here: &Measure,
-        (alpha_test, mut last, mut c): (f64, f64, DVector<f64>),
-        trials: &mut usize,
+        (alpha_test, size, c): (f64, f64, DVector<f64>),
     ) -> Result<Option<Accepted>, EarlyExit> {
-        let mut r = self.layout.residual(&self.at.point.c, &self.at.s);
-        let mut alpha = alpha_test;
-        for _ in 0..CORRECTIONS {
-            r = &r * alpha + &c;
-            let direction = self.system.step(self.at, self.layout, b, self.mu, &r);
-            if !direction.is_finite() {
-                return Ok(None);
-            }
-            alpha = direction.primal_limit(self.at, self.layout, self.tau);
-            *trials += 1;
-            let lengths = (alpha, alpha_test);
-            match self.attempt(program, filter, here, &direction, lengths)? {
-                Trial::Accepted(found) => {
-                    let (point, slopes, s) = *found;
-                    return Ok(Some(Accepted {
-                        point,
-                        slopes,
-                        s,
-                        alpha,
-                        direction,
-                        trials: *trials,
-                    }));
-                }
-                Trial::Refused { theta, c: next, .. } if theta <= CORRECTION_GAIN * last => {
-                    last = theta;
-                    c = next;
-                }
-                Trial::Refused { .. } | Trial::Undefined => return Ok(None),
-            }
+        let r = self.layout.residual(&self.at.point.c, &self.at.s) * alpha_test + c;
+        let direction = self.system.step(self.at, self.layout, b, self.mu, &r);
+        let alpha = direction.primal_limit(self.at, self.layout, self.tau);
+        // A correction changes a step; it does not take its place. Where the rows overflow at the
+        // refused point, the corrected step is cut to nothing, which the filter would accept.
+        let short = alpha * direction.size() < SHORTEST * alpha_test * size;
+        if short || !direction.is_finite() {
+            return Ok(None);
         }
-        Ok(None)
+        let lengths = (alpha, alpha_test);
+        match self.attempt(program, filter, here, &direction, lengths)? {
+            Trial::Accepted(found) => {
+                let (point, slopes, s) = *found;
+                Ok(Some(Accepted {
+                    point,
+                    slopes,
+                    s,
+                    alpha,
+                    direction,
+                    trials: 2,
+                }))
+            }
+            Trial::Refused { .. } | Trial::Undefined => Ok(None),
+        }
     }
 }

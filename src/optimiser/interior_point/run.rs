@@ -6,6 +6,7 @@ use crate::optimiser::convergence::{is_solved_at_end, scaled_residual};
 use crate::optimiser::ending::{Claim, Ending, FinalIterate, status_of};
 use crate::optimiser::interior_point::iteration::InteriorPoint;
 use crate::optimiser::multipliers::{ScaledMultipliers, scaled_multipliers};
+use crate::optimiser::options::Method;
 use crate::optimiser::outcome::Status;
 use crate::optimiser::program::{Derivatives, Point, Program};
 use crate::optimiser::renewal::renewed;
@@ -90,6 +91,7 @@ fn finish_interior_point(program: &mut Program<'_>, mut method: InteriorPoint) -
     }
     FinalIterate {
         status,
+        method: Method::InteriorPoint,
         multipliers,
         scaled,
         claim: Claim::Untested,

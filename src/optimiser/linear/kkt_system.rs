@@ -43,13 +43,9 @@ struct Exact {
     stiffness: Jacobian,
 }
 
-/// First addition to a Hessian that is not positive definite, relative to its largest diagonal entry, and
-/// the factor by which it grows.
-const SMALL: f64 = 1e-6;
-const GROWTH: f64 = 10.0;
-
 impl Exact {
-    /// Adds a multiple of the identity until the matrix has n positive eigenvalues.
+    /// If the matrix has not n positive eigenvalues, the most negative entry h of its diagonal is
+    /// reversed by the addition of 2 |h| I. This suffices, as Gᵀ W⁻¹ G has none below zero.
     fn factor(
         curvature: &Curvature,
         sigma: &DVector<f64>,
@@ -61,9 +57,9 @@ impl Exact {
         let stiffness = curvature.stiffness.clone();
         let d = d.clone().resize_vertically(rows.shape().0, 0.0);
         let mut diagonal = DVector::from_column_slice(&curvature.diagonal);
-        let size = diagonal.amax().max(1.0);
-        let mut added = 0.0;
-        while added <= size / SMALL {
+        let least = (sigma + &diagonal).min();
+        for added in [0.0, -2.0 * least] {
+            diagonal.add_scalar_mut(added);
             let h = sigma + &diagonal;
             if let Some(factors) = SparseKkt::factor(&h, None, &rows, &d, Some(&stiffness))
                 && factors.positive_pivots() == n
@@ -75,9 +71,6 @@ impl Exact {
                     stiffness,
                 });
             }
-            let next = (GROWTH * added).max(SMALL * size);
-            diagonal.add_scalar_mut(next - added);
-            added = next;
         }
         None
     }

@@ -15,6 +15,9 @@ const FLATTER: f64 = 0.1;
 /// Least scale. It allows steps of 1e20 gradients in an unbounded program.
 const FLATTEST: f64 = 1e-20;
 
+/// Share of a change of the gradient that a separable model may leave unexplained.
+const FORETOLD: f64 = 0.2;
+
 /// Least and largest entry of the diagonal of a limited memory.
 const FLATTEST_BASE: f64 = 1e-10;
 const STEEPEST_BASE: f64 = 1e12;
@@ -43,6 +46,9 @@ pub struct QuasiNewton {
     /// predicted the newest pair better.
     #[serde(default)]
     model: Vec<f64>,
+    /// Whether the model foretells so much that the pairs add only the rest.
+    #[serde(default)]
+    structured: bool,
     pairs: Vec<Pair>,
     skipped: usize,
     /// Second derivatives at the present point, where the program gives them. They take the place of
@@ -74,6 +80,20 @@ struct Pair {
     s: DVector<f64>,
     #[serde(with = "as_list")]
     y: DVector<f64>,
+    /// The part of y that the separable model foretold; empty without a model.
+    #[serde(with = "as_list", default = "empty")]
+    foretold: DVector<f64>,
+}
+
+fn empty() -> DVector<f64> {
+    DVector::zeros(0)
+}
+
+/// A separable model of the Lagrangian: its second derivatives at the newest point, and the change
+/// of its gradient over the newest step.
+pub(crate) struct Separable {
+    pub curvature: Vec<f64>,
+    pub change: DVector<f64>,
 }
 
 /// B = σ I + W diag(λ − σ) Wᵀ with orthonormal columns W.
@@ -101,6 +121,7 @@ impl QuasiNewton {
             sigma: 1.0,
             base: Vec::new(),
             model: Vec::new(),
+            structured: false,
             pairs,
             skipped: 0,
             exact: None,
@@ -154,6 +175,7 @@ impl QuasiNewton {
         self.sigma = sigma;
         self.base.clear();
         self.model.clear();
+        self.structured = false;
         self.cached = Cached::default();
     }
 
@@ -194,6 +216,7 @@ impl QuasiNewton {
         self.pairs.clear();
         self.base.clear();
         self.model.clear();
+        self.structured = false;
         self.skipped = 0;
         self.cached = Cached::default();
     }
@@ -221,7 +244,52 @@ impl QuasiNewton {
 
     /// Adds a pair.
     pub(crate) fn update(&mut self, s: DVector<f64>, y: DVector<f64>) {
-        self.update_with(s, y, &[]);
+        self.update_with(s, y, None);
+    }
+
+    /// Adds a pair. With a separable model D that foretells most of y, B starts from D, and the
+    /// pairs give it only what D does not foretell: y = D s + (y − foretold), with D at the present
+    /// point (structured secant method, Dennis, Martínez & Tapia 1989).
+    pub(crate) fn update_with(
+        &mut self,
+        s: DVector<f64>,
+        y: DVector<f64>,
+        model: Option<Separable>,
+    ) {
+        let (sy, ss, yy) = (s.dot(&y), s.norm_squared(), y.norm_squared());
+        if !(sy.is_finite() && ss.is_finite() && yy.is_finite()) || ss == 0.0 {
+            return;
+        }
+        if sy <= CURVATURE * (ss * yy).sqrt() {
+            self.skipped += 1;
+            if self.skipped >= 2 {
+                self.reset();
+                self.sigma = (FLATTER * self.sigma).max(FLATTEST);
+            }
+            return;
+        }
+        self.skipped = 0;
+        self.sigma = (sy / ss).clamp(1e-8, 1e8);
+        self.model.clear();
+        self.structured = false;
+        let mut foretold = empty();
+        if let Some(model) = model {
+            self.structured = (&y - &model.change).norm_squared() <= FORETOLD * FORETOLD * yy;
+            if self.structured {
+                self.model = model.curvature;
+            } else {
+                self.choose_base(&s, &y, &model.curvature);
+            }
+            foretold = model.change;
+        }
+        if self.diagonal {
+            self.update_base(&s, &y);
+        }
+        self.pairs.push(Pair { s, y, foretold });
+        if self.pairs.len() > self.memory {
+            self.pairs.remove(0);
+        }
+        self.cached = Cached::default();
     }
 
     /// Takes `model` as diagonal if it predicts the pair better than the kept one. A diagonal D
@@ -237,41 +305,30 @@ impl QuasiNewton {
         };
         let kept = &self.base;
         let (misfit, _) = fit(&|i| kept.get(i).copied().unwrap_or(1.0));
-        self.model.clear();
-        if model.len() == self.n {
-            let (of_model, factor) = fit(&|i| model[i]);
-            if of_model < misfit {
-                let scaled = |d: &f64| (d * factor).clamp(FLATTEST_BASE, STEEPEST_BASE);
-                self.model = model.iter().map(scaled).collect();
-            }
+        let (of_model, factor) = fit(&|i| model[i]);
+        if !self.dense && of_model < misfit {
+            let scaled = |d: &f64| (d * factor).clamp(FLATTEST_BASE, STEEPEST_BASE);
+            self.model = model.iter().map(scaled).collect();
         }
     }
 
-    /// Adds a pair. `model` is a positive diagonal by a model of the program, or empty.
-    pub(crate) fn update_with(&mut self, s: DVector<f64>, y: DVector<f64>, model: &[f64]) {
-        let (sy, ss, yy) = (s.dot(&y), s.norm_squared(), y.norm_squared());
-        if !(sy.is_finite() && ss.is_finite() && yy.is_finite()) || ss == 0.0 {
-            return;
-        }
-        if sy <= CURVATURE * (ss * yy).sqrt() {
-            self.skipped += 1;
-            if self.skipped >= 2 {
-                self.reset();
-                self.sigma = (FLATTER * self.sigma).max(FLATTEST);
+    /// The pairs that B satisfies one after the other.
+    fn secants(&self) -> Vec<(DVector<f64>, DVector<f64>)> {
+        let secant = |pair: &Pair| {
+            let (s, y) = (&pair.s, &pair.y);
+            if !self.structured {
+                return (s.clone(), y.clone());
             }
-            return;
-        }
-        self.skipped = 0;
-        self.sigma = (sy / ss).clamp(1e-8, 1e8);
-        if self.diagonal {
-            self.choose_base(&s, &y, model);
-            self.update_base(&s, &y);
-        }
-        self.pairs.push(Pair { s, y });
-        if self.pairs.len() > self.memory {
-            self.pairs.remove(0);
-        }
-        self.cached = Cached::default();
+            let mut change = DVector::from_fn(self.n, |i, _| self.model[i] * s[i]);
+            if pair.foretold.len() == self.n {
+                let whole = &change + y - &pair.foretold;
+                if s.dot(&whole) > CURVATURE.sqrt() * s.norm() * whole.norm() {
+                    change = whole;
+                }
+            }
+            (s.clone(), change)
+        };
+        self.pairs.iter().map(secant).collect()
     }
 
     /// Whether B is kept as a dense matrix.
@@ -310,10 +367,13 @@ impl QuasiNewton {
 
     /// B as a dense matrix.
     pub(crate) fn dense(&mut self) -> &DMatrix<f64> {
-        let (n, sigma, pairs) = (self.n, self.sigma, &self.pairs);
+        let (base, pairs) = match self.cached.dense {
+            Some(_) => (DVector::zeros(0), Vec::new()),
+            None => (self.base(), self.secants()),
+        };
         self.cached.dense.get_or_insert_with(|| {
-            let mut b = DMatrix::from_diagonal_element(n, n, sigma);
-            for Pair { s, y } in pairs {
+            let mut b = DMatrix::from_diagonal(&base);
+            for (s, y) in &pairs {
                 let bs = &b * s;
                 b.ger(-1.0 / s.dot(&bs), &bs, &bs, 1.0);
                 b.ger(1.0 / y.dot(s), y, y, 1.0);
@@ -369,10 +429,12 @@ impl QuasiNewton {
         if self.pairs.is_empty() {
             return None;
         }
-        let base = self.base();
-        let pairs = self.pairs.iter().map(|pair| (&pair.s, &pair.y));
-        let compact = &mut self.cached.compact;
-        Some(compact.get_or_insert_with(|| Compact::new(base, pairs)))
+        if self.cached.compact.is_none() {
+            let secants = self.secants();
+            let pairs = secants.iter().map(|(s, y)| (s, y));
+            self.cached.compact = Some(Compact::new(self.base(), pairs));
+        }
+        self.cached.compact.as_ref()
     }
 
     /// B + diag(`d`) as a matrix.

@@ -2,6 +2,7 @@
 
 use crate::optimiser::ending::{Claim, Ending, FinalIterate, status_of};
 use crate::optimiser::multipliers::scaled_multipliers;
+use crate::optimiser::options::Method;
 use crate::optimiser::program::{Derivatives, EarlyExit, Point, Program};
 use crate::optimiser::renewal::renewed;
 use crate::optimiser::state::SavedState;
@@ -51,6 +52,7 @@ fn finish_trust_region(program: &mut Program<'_>, mut method: TrustRegion) -> Fi
     let status = status_of(program, result, &method.point);
     FinalIterate {
         status,
+        method: Method::TrustRegion,
         multipliers: method.multipliers(program),
         scaled: method.optimality(program),
         claim: Claim::Untested,

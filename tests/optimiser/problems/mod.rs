@@ -57,6 +57,7 @@ pub mod recorded;
 pub mod residuals;
 pub mod scaled;
 pub mod separable;
+pub mod sized_truss;
 pub mod truss;
 
 use problem::Problem;
