@@ -2,8 +2,9 @@
 
 use super::case::{Case, Judge};
 use crate::driver::analysed::Simulated;
+use crate::driver::certificate::{self, certify};
 use crate::driver::check::{CheckedDerivative, check};
-use crate::driver::{KnownEvaluations, Simulation, error, optimise, simulate, start};
+use crate::driver::{KnownEvaluations, Optimisation, Simulation, error, optimise, simulate, start};
 use crate::integrate::{Method, Spacing};
 use crate::optimiser::Status;
 use crate::problem::{Override, Problem};
@@ -264,11 +265,22 @@ fn optimisation(
     row.error = Some(error).filter(|error| error.is_finite());
     row.outcome = match done.outcome.status {
         Status::Converged if error <= case.bound => StabilityOutcome::Accurate,
-        Status::Converged => StabilityOutcome::WrongAndSilent,
+        Status::Converged => match not_confirmed(problem, &done) {
+            Some(message) => StabilityOutcome::Refused { message },
+            None => StabilityOutcome::WrongAndSilent,
+        },
         _ => StabilityOutcome::Refused {
             message: done.optimum.message.clone(),
         },
     };
+}
+
+/// Why the gradients of an optimum are not confirmed, with which the command fails, if so.
+fn not_confirmed(problem: &Problem, done: &Optimisation) -> Option<String> {
+    let found = certify(problem, done, certificate::TOLERANCE);
+    let designs = [&found.start, &found.optimum];
+    let mut faults = designs.into_iter().flat_map(|design| &design.faults);
+    faults.next().map(|fault| format!("gradients: {fault}"))
 }
 
 /// A text over several lines as one.

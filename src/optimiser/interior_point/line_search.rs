@@ -103,6 +103,18 @@ impl LineSearch<'_> {
         let longest = direction
             .primal_limit(self.at, self.layout, self.tau)
             .min(cap);
+        let stationary = here.theta == 0.0 && self.at.slopes.g.amax() == 0.0;
+        if stationary && direction.size() <= RESOLUTION {
+            // Only the multipliers move.
+            return Ok(Some(Accepted {
+                point: self.at.point.clone(),
+                slopes: self.at.slopes.clone(),
+                s: self.at.s.clone(),
+                alpha: longest,
+                direction,
+                trials: 1,
+            }));
+        }
         let mut first = None;
         let least = self.least_step(&here).min(1e-3 * longest);
         let mut alpha = longest;
