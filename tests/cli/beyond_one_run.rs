@@ -197,12 +197,42 @@ const REST: &str = r#"{
   "objective": {"maximise": "energy"}
 }"#;
 
+/// It is left: the largest energy is that of 3 m/s.
+#[test]
+fn a_stationary_start_that_is_no_optimum_is_left() {
+    let at = scratch();
+    std::fs::write(at.path().join("rest.json"), REST).expect("is written");
+    expect(
+        0,
+        at.path(),
+        &["rest.json", "--output", "out", "--second-order"],
+    );
+    let found = json(&read(&at.path().join("out/optimum.json")));
+    let energy = found["objective"]["value"].as_f64().expect("a number");
+    assert!((energy - 9.0).abs() < 1e-6, "{energy}");
+}
+
+/// The angular momentum m x v of a ball is a saddle at rest, to which a start on its ridge leads.
+const SADDLE: &str = r#"{
+  "version": 1, "name": "saddle", "gravity": [0, 0, 0],
+  "bodies": {"ball": {
+    "shape": "point", "mass": 2, "velocity": {"linear": [0, 1, 0]}, "place": {"put": [0, 0, 0], "at": [1, 0, 0]}
+  }},
+  "simulation": {"duration": 1, "steps": 4},
+  "functions": {"spin": {"final": {"angular_momentum": {"direction": [0, 0, 1]}}}},
+  "variables": {
+    "along": {"path": "/bodies/ball/velocity/linear/1", "lower": -2, "upper": 3},
+    "aside": {"path": "/bodies/ball/place/at/0", "lower": -2, "upper": 3}
+  },
+  "objective": {"minimise": "spin"}
+}"#;
+
 #[test]
 fn a_stationary_point_that_is_no_optimum_fails_the_check() {
     let at = scratch();
-    std::fs::write(at.path().join("rest.json"), REST).expect("is written");
+    std::fs::write(at.path().join("saddle.json"), SADDLE).expect("is written");
     let run = |code: i32, how: &[&str]| {
-        let arguments = [&["rest.json", "--output", "out"], how].concat();
+        let arguments = [&["saddle.json", "--output", "out"], how].concat();
         expect(code, at.path(), &arguments)
     };
     run(0, &[]);
