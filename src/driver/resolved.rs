@@ -105,7 +105,8 @@ pub(crate) fn of_gradients(
     gradients: &[Vec<f64>],
 ) -> Result<Vec<Unresolved>, IntegrationFailure> {
     let sizes = |row: usize, gradient: &[f64]| sizes(problem, at, which[row], gradient);
-    match alike(problem, at, which, gradients, &sizes) {
+    let coarse = on_doubled_steps(problem, at, which);
+    match coarse.is_some_and(|coarse| alike(gradients, &coarse, &sizes)) {
         true => Ok(Vec::new()),
         false => by_halves(problem, at, which, &sizes),
     }
@@ -123,11 +124,21 @@ pub(crate) fn at_the_end(
     if adaptive && end.run.method == Method::Dop853 || which.is_empty() {
         return None;
     }
-    let (first, _) = start.gradients(problem, which).ok()?;
     let (last, _) = end.gradients(problem, which).ok()?;
+    let coarse = on_doubled_steps(problem, end, which);
+    let is_alike = |sizes: &Sizes<'_>| {
+        let coarse = coarse.as_ref();
+        coarse.is_some_and(|coarse| alike(&last, coarse, sizes))
+    };
+    let own = |row: usize, gradient: &[f64]| sizes(problem, end, which[row], gradient);
+    if is_alike(&own) {
+        return None;
+    }
+    // The start decides only where the gradient at the end is small.
+    let (first, _) = start.gradients(problem, which).ok()?;
     let sizes = |row: usize, gradient: &[f64]| {
         let before = sizes(problem, start, which[row], &first[row]);
-        let now = sizes(problem, end, which[row], gradient);
+        let now = own(row, gradient);
         // A derivative by what has become a hundred times as large counts as much at a hundredth of its size.
         let part = |i: usize| match (start.x[i].abs(), end.x[i].abs()) {
             (before, now) if before < now && before > 0.0 => before / now,
@@ -138,28 +149,19 @@ pub(crate) fn at_the_end(
             .map(|(i, (now, before))| now.max(part(i) * before))
             .collect()
     };
-    let found = match alike(problem, end, which, &last, &sizes) {
-        true => return None,
-        false => by_halves(problem, end, which, &sizes).ok()?,
-    };
+    if is_alike(&sizes) {
+        return None;
+    }
+    let found = by_halves(problem, end, which, &sizes).ok()?;
     Some(format!("at the end {}", refusal(problem, &found)?))
 }
 
 /// The sizes of the derivatives of a function, by its place among the requested ones and its gradient.
 type Sizes<'a> = dyn Fn(usize, &[f64]) -> Vec<f64> + 'a;
 
-/// Whether doubled steps give nearly the same gradients.
-fn alike(
-    problem: &Problem,
-    at: &Evaluated,
-    which: &[usize],
-    gradients: &[Vec<f64>],
-    sizes: &Sizes<'_>,
-) -> bool {
-    let Some(coarse) = on_doubled_steps(problem, at, which) else {
-        return false;
-    };
-    let mut rows = gradients.iter().zip(&coarse).enumerate();
+/// Whether the gradients on doubled steps are nearly the same.
+fn alike(gradients: &[Vec<f64>], coarse: &[Vec<f64>], sizes: &Sizes<'_>) -> bool {
+    let mut rows = gradients.iter().zip(coarse).enumerate();
     rows.all(|(row, (fine, coarse))| {
         let sizes = sizes(row, fine);
         let mut pairs = fine.iter().zip(coarse).zip(sizes);

@@ -82,6 +82,14 @@ pub(crate) struct Modal<S> {
     pub sections: Arc<[BeamSection]>,
 }
 
+impl<S: Scalar> Modal<S> {
+    /// β of strains that are damped in proportion to their stiffness, of a beam or of shells \[s\]; `None` without.
+    pub(crate) fn strain_damping(&self) -> Option<S> {
+        let of_shells = self.shells.as_ref().and_then(|own| own.elements.damping);
+        of_shells.map(|[_, beta]| beta).or(self.viscosity)
+    }
+}
+
 /// What the coordinates of a beam do to a section, by rows, for estimates.
 #[derive(Clone, Debug)]
 pub(crate) struct BeamSection {

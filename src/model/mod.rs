@@ -65,11 +65,8 @@ impl<S: Scalar> Model<S> {
         let driven = self.joints.iter().any(|joint| !joint.drives.is_empty());
         let undamped = |body: &FlexibleBody<S>| match &body.form {
             Form::Modal(modal) => {
-                let damped = |beta: S| beta.re() != 0.0;
-                let viscous = modal.shells.as_ref().is_some_and(|own| own.damps());
-                !viscous
-                    && !modal.viscosity.is_some_and(damped)
-                    && modal.damping.iter().all(|x| x.re() == 0.0)
+                let viscous = modal.strain_damping().is_some_and(|beta| beta.re() != 0.0);
+                !viscous && modal.damping.iter().all(|x| x.re() == 0.0)
             }
             Form::Finite(finite) => {
                 let mut all = finite.damping.iter().flatten();

@@ -27,13 +27,6 @@ pub(crate) struct ReducedShells<S> {
 parameters!(struct ReducedShells { basis; pairs, elements });
 
 impl<S: Scalar> ReducedShells<S> {
-    /// Whether strains are damped.
-    pub(crate) fn damps(&self) -> bool {
-        self.elements
-            .damping
-            .is_some_and(|[_, beta]| beta.re() != 0.0)
-    }
-
     /// v = V q.
     pub(crate) fn unknowns(&self, q: &[S]) -> Vec<S> {
         let mut out = vec![S::zero(); self.elements.mesh.coordinates];

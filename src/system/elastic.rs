@@ -7,13 +7,6 @@ use crate::math::Scalar;
 use crate::math::slices::{add_scaled, dot};
 use crate::model::flexible::Modal;
 
-/// The part of the stiffness in the damping, β \[s\]; `None` without it.
-fn viscosity<S: Scalar>(body: &Modal<S>) -> Option<S> {
-    let shells = body.shells.as_ref();
-    let of_shells = shells.and_then(|own| own.elements.damping);
-    of_shells.map(|[_, beta]| beta).or(body.viscosity)
-}
-
 /// Adds K q̇ + Σ k_p ∇e_p ė_p (see [`strains::add_viscous`]).
 fn add_viscous<S: Scalar>(body: &Modal<S>, q: &[S], rate: &[S], out: &mut [S]) {
     strains::add_viscous(&body.stiffness, q, rate, out);
@@ -48,7 +41,7 @@ pub(crate) fn add_forces<S: Scalar>(body: &Modal<S>, q: &[S], rate: &[S], out: &
     if let Some(shells) = &body.shells {
         pairs::add_forces(&shells.pairs, q, out);
     }
-    if let Some(beta) = viscosity(body) {
+    if let Some(beta) = body.strain_damping() {
         let mut force = vec![S::zero(); q.len()];
         add_viscous(body, q, rate, &mut force);
         add_scaled(out, beta, &force);
@@ -73,7 +66,7 @@ pub(crate) fn add_jacobian<S: Scalar>(
     if let Some(shells) = &body.shells {
         pairs::add_jacobian(&shells.pairs, q, by_y);
     }
-    if let Some(beta) = viscosity(body) {
+    if let Some(beta) = body.strain_damping() {
         strains::add_viscous_jacobian(&body.stiffness, (q, rate), beta, (by_y, by_v));
         if let Some(shells) = &body.shells {
             pairs::add_viscous_jacobian(&shells.pairs, (q, rate), beta, (by_y, by_v));
@@ -94,7 +87,7 @@ pub(crate) fn pull_forces(
         pairs::pull_forces(&own.pairs, (q, psi), by_q, &mut cot.pairs);
     }
     strains::pull_forces(&body.stiffness, (q, psi), by_q, &mut cot.stiffness);
-    if let Some(beta) = viscosity(body) {
+    if let Some(beta) = body.strain_damping() {
         let motion = (q, rate, psi);
         let mut force = vec![0.0; q.len()];
         add_viscous(body, q, rate, &mut force);
