@@ -5,6 +5,7 @@ use super::arguments::Job;
 use super::error_table::{self, table};
 use super::{DONE, Failure, NOT_REACHED, draw, load, print, read, refine, shown, tell};
 use crate::driver::tables::ReactionAxes;
+use crate::driver::unfollowed::unfollowed;
 use crate::driver::{
     self, CheckedDerivative, Evaluated, Simulated, Simulation, error, figures, not_finite, tables,
 };
@@ -31,7 +32,13 @@ pub(crate) fn simulate(job: &Job, json: bool, joint_axes: bool) -> Result<u8, Fa
         let what = "found --vtu without --output, expected a directory for the files";
         return Err(Failure::bad_input(what));
     }
-    let simulation = driver::simulate(&problem, &problem.start()).map_err(Failure::numerical)?;
+    let start = problem.start();
+    let simulation = match job.error {
+        // Their derivatives are told, too.
+        true => driver::simulate_for_gradients(&problem, &start),
+        false => driver::simulate(&problem, &start),
+    };
+    let simulation = simulation.map_err(Failure::numerical)?;
     if json {
         print(&as_json(&problem, &simulation, job.error)?)?;
     } else {
@@ -91,6 +98,9 @@ fn as_json(
     let (run, counts) = (&simulation.at.run, simulation.at.run.counts);
     let names = &problem.function_names;
     let mut functions = Map::new();
+    let unknown = with_errors
+        .then(|| unfollowed(problem, &simulation.at))
+        .flatten();
     for (f, name) in names.iter().enumerate() {
         let found = simulation.at.function(f);
         let mut own =
@@ -109,6 +119,9 @@ fn as_json(
         for found in found.map_err(Failure::numerical)? {
             let own = &mut functions[&names[found.function]];
             own["error"] = json!(found.value.error);
+            if unknown.is_some() {
+                own["error_known"] = json!(false);
+            }
             let gradient = problem.variables.iter().zip(&found.gradient);
             let gradient = gradient.map(|(variable, derivative)| {
                 let both = json!({"value": derivative.value, "error": derivative.error});
@@ -127,6 +140,7 @@ fn as_json(
     }
     let mut warnings: Vec<String> = simulation.warning.iter().cloned().collect();
     warnings.extend(simulation.at.doubts(problem, 0..names.len()));
+    warnings.extend(unknown);
     let first = &simulation.observations[0];
     let conserved = simulation.at.scene.model.conserves_energy();
     let (position, velocity) = simulation.constraint_drift();
@@ -278,7 +292,9 @@ fn of_all_nodes(failure: impl std::fmt::Display) -> Failure {
 /// A warning of a motion that magnifies round-off.
 fn warned(problem: &Problem, at: &Evaluated) -> String {
     let chaos = driver::chaos::of_motion(problem, at, &all(problem));
-    chaos.map_or_else(String::new, |chaos| format!("warning: {chaos}\n"))
+    let chaos = chaos.map(|chaos| format!("warning: {chaos}\n"));
+    let unknown = unfollowed(problem, at).map(|why| format!("not known: {why}\n"));
+    unknown.into_iter().chain(chaos).collect()
 }
 
 /// Checks all gradients of a problem at its start.

@@ -85,15 +85,17 @@ pub(super) fn hit(
     let drives = drives.flat_map(|joint| joint.drives.iter().map(move |drive| (joint, drive)));
     let length = length_scale(model);
     let one = |(joint, drive): (&Joint<f64>, &Drive<f64>)| {
-        let ([_, rate, ..], own) = (at_start(drive), joint_rate(joint, drive.dof, &motions));
+        let [value, rate, acceleration, _] = at_start(drive);
+        let own = joint_rate(joint, drive.dof, &motions);
         let (unit, scale) = match drive.dof {
             DegreeOfFreedom::Rotation => ("rad/s", 1.0),
             DegreeOfFreedom::Translation => ("m/s", length),
         };
-        // Round-off of the velocities is no change.
-        let fastest = given
-            .iter()
-            .fold(rate.abs(), |most, v| most.max(v.abs() * scale));
+        // Round-off of the velocities, or of the rate of a drive at its dead point, is no change.
+        let at_dead_point = (value * acceleration).abs().sqrt();
+        let fastest = given.iter().fold(rate.abs().max(at_dead_point), |most, v| {
+            most.max(v.abs() * scale)
+        });
         ((rate - own).abs() > TOLD * fastest).then(|| {
             format!(
                 "the drive of joint \"{}\" starts with a rate of {} {unit}, and the given velocities of its bodies with {}: an \

@@ -6,10 +6,11 @@ use crate::adjoint;
 use crate::functions::rest::{passes_rest, vanishing};
 use crate::functions::{Scene, evaluate, smoothed};
 use crate::integrate::{
-    IntegrationFailure, Samples, Settings, Trajectory, WorkCounts, simulate_by,
+    IntegrationFailure, Samples, Settings, Trajectory, WorkCounts, irregular, simulate_by,
 };
+use crate::math::scalar::COMPLEX_STEP;
 use crate::math::soft_max::Smoothed;
-use crate::math::{Dual, Parameters};
+use crate::math::{Complex64, Dual, Parameters};
 use crate::model::RigidBody;
 use crate::model::flexible::FlexibleBody;
 use crate::problem::{Focus, Problem};
@@ -27,6 +28,14 @@ pub(crate) struct Evaluated {
     pub scene: Scene<f64>,
     /// Its motion.
     pub run: Trajectory<f64>,
+}
+
+/// A design with an infinitesimal change of all variables, each in its scale.
+fn along(problem: &Problem, x: &[f64]) -> Vec<Complex64> {
+    let scaled = problem.variables.iter().zip(x).enumerate();
+    scaled
+        .map(|(i, (variable, &x))| Complex64::new(x, COMPLEX_STEP * variable.scale * irregular(i)))
+        .collect()
 }
 
 impl Evaluated {
@@ -68,7 +77,12 @@ impl Evaluated {
             return Err(IntegrationFailure::Section { body, fault });
         }
         integration.unlowered += usize::from(!problem.lower(&mut scene));
-        let (run, refresh) = integration.simulate(&mut scene)?;
+        let (mut run, mut refresh) = integration.simulate(&mut scene)?;
+        if refresh.is_some() {
+            let tangent = || problem.scene(&along(problem, x));
+            let (resolved, more) = integration.resolve_tangent(&mut scene, run, tangent)?;
+            (run, refresh) = (resolved, more.or(refresh));
+        }
         let x = x.to_vec();
         Ok((Self { x, scene, run }, refresh))
     }

@@ -10,6 +10,7 @@ use crate::integrate::{
     Chosen, Grid, IntegrationFailure, Limits, LinearSolver, Method, Samples, Settings, Spacing,
     Trajectory, choice, has_kinks, simulate, simulate_by,
 };
+use crate::math::Complex64;
 use crate::problem::Problem;
 
 /// Samples of a motion with steps by tolerance, for tables, figures and events.
@@ -29,6 +30,9 @@ const MOST_LATE: f64 = 0.05;
 
 /// Reason of a choice after the end has moved past a kink.
 const PASSED: &str = "the end of the motion has passed an instant of a table";
+
+/// Reason of steps that follow a tangent.
+const RESOLVED: &str = "the gradients need smaller steps than the motion";
 
 /// Reason of the first choice of steps.
 pub(crate) const FIRST_DESIGN: &str = "first design";
@@ -52,8 +56,9 @@ pub(crate) struct Integration {
     /// Number of designs that do not fulfil the conditions of the lowering.
     pub unlowered: usize,
     memory: usize,
-    /// Whether the functions have derivatives: the problem has variables.
+    /// Whether the functions have derivatives: the problem has variables; and whether they will be requested.
     derivatives: bool,
+    gradients: bool,
     /// When the event came in the last run, if the scene has one \[s\].
     pub event: Option<f64>,
     /// When it comes in the next run, if that is known to the last bit \[s\].
@@ -136,6 +141,7 @@ impl Integration {
                 (false, _) => 0,
             },
             derivatives: !problem.variables.is_empty(),
+            gradients,
             event: None,
             settled: None,
         }
@@ -159,6 +165,7 @@ impl Integration {
             unlowered: 0,
             memory: 0,
             derivatives: false,
+            gradients: false,
             event: None,
             settled: None,
         }
@@ -173,6 +180,77 @@ impl Integration {
     pub(crate) fn chosen(&self) -> Option<(&Settings, &str)> {
         let (settings, reason) = self.chosen.as_ref()?;
         Some((settings, reason))
+    }
+
+    /// Whether steps in use that were chosen by `tolerance` have followed the error of the motion alone, although
+    /// gradients will be requested.
+    fn overlooks_tangent(&self) -> Option<(&Settings, f64)> {
+        let (settings, _) = self.chosen.as_ref()?;
+        match self.spacing {
+            Spacing::Tolerance(tolerance)
+                if self.gradients && self.derivatives && settings.method != Method::Dop853 =>
+            {
+                Some((settings, tolerance))
+            }
+            _ => None,
+        }
+    }
+
+    /// Makes the steps that `run` has chosen anew resolve a tangent, too: they are those of a run of `tangent`, the scene
+    /// with an infinitesimal change of the design, if these are more. A tangent that cannot be followed changes nothing.
+    ///
+    /// # Errors
+    /// If the simulation by these steps fails.
+    pub(super) fn resolve_tangent(
+        &mut self,
+        scene: &mut Scene<f64>,
+        run: Trajectory<f64>,
+        tangent: impl FnOnce() -> Scene<Complex64>,
+    ) -> Result<(Trajectory<f64>, Option<Refresh>), IntegrationFailure> {
+        let Some((settings, tolerance)) = self.overlooks_tangent() else {
+            return Ok((run, None));
+        };
+        let by_tangent = Settings {
+            spacing: Spacing::Tolerance(tolerance),
+            samples: Samples::Uniform(1),
+            memory: 0,
+            ..settings.clone()
+        };
+        let duration = Complex64::from(run.duration);
+        let Ok(found) = simulate(&tangent().model, duration, &by_tangent) else {
+            return Ok((run, None));
+        };
+        if found.grid.steps() <= run.grid.steps() {
+            return Ok((run, None));
+        }
+        let settings = Settings {
+            spacing: Spacing::Frozen(found.grid),
+            ..settings.clone()
+        };
+        let finer = event::settle(scene, &settings, run.duration, Admit::Late)?;
+        let (run, settings) = self.resolved(scene, finer, settings)?;
+        let refresh = self.take_steps(settings, RESOLVED.into());
+        Ok((self.keep(scene, run), Some(refresh)))
+    }
+
+    /// Takes other steps from now on.
+    pub(super) fn take_steps(&mut self, settings: Settings, why: String) -> Refresh {
+        let reason = self
+            .chosen
+            .take()
+            .map_or_else(String::new, |(_, reason)| reason);
+        let general = choice::reason(self.method.is_some(), settings.method);
+        let refresh = Refresh {
+            method: settings.method.name(),
+            method_reason: Some(reason.clone()).filter(|reason| reason != general),
+            grid: match &settings.spacing {
+                Spacing::Frozen(grid) => Some(grid.clone()),
+                Spacing::Steps(_) | Spacing::Tolerance(_) => None,
+            },
+            reason: why,
+        };
+        self.chosen = Some((settings, reason));
+        refresh
     }
 
     /// Number of steps of the motion, if known.
@@ -390,22 +468,15 @@ impl Integration {
         run: Trajectory<f64>,
         why: String,
     ) -> Result<(Trajectory<f64>, Option<Refresh>), IntegrationFailure> {
-        let Some((settings, reason)) = self.chosen.clone() else {
+        let Some((settings, _)) = self.chosen.clone() else {
             return Ok((run, None));
         };
         let (run, settings) = self.resolved(scene, run, settings)?;
-        let Spacing::Frozen(grid) = &settings.spacing else {
+        if !matches!(settings.spacing, Spacing::Frozen(_)) {
             return Ok((self.keep(scene, run), None));
-        };
-        let general = choice::reason(self.method.is_some(), settings.method);
-        let refresh = Refresh {
-            method: settings.method.name(),
-            method_reason: Some(reason.clone()).filter(|reason| reason != general),
-            grid: Some(grid.clone()),
-            reason: why,
-        };
+        }
         self.refreshes += 1;
-        self.chosen = Some((settings, reason));
+        let refresh = self.take_steps(settings, why);
         Ok((self.keep(scene, run), Some(refresh)))
     }
 

@@ -37,6 +37,7 @@ pub(crate) mod statics;
 mod stretch;
 pub(crate) mod tables;
 pub(crate) mod traces;
+pub(crate) mod unfollowed;
 pub(crate) mod warm_start;
 pub(crate) mod work_precision;
 
@@ -52,5 +53,5 @@ pub(crate) use multi_start::multi_start;
 pub(crate) use optimise::{Optimisation, optimise};
 pub(crate) use parameter::{sensitivity, swept};
 pub(crate) use second_order::second_order;
-pub(crate) use simulate::{Simulation, simulate};
+pub(crate) use simulate::{Simulation, simulate, simulate_for_gradients};
 pub(crate) use warm_start::WarmStart;

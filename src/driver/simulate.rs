@@ -32,7 +32,26 @@ pub(crate) struct Simulation {
 /// # Errors
 /// If the simulation fails.
 pub(crate) fn simulate(problem: &Problem, x: &[f64]) -> Result<Simulation, IntegrationFailure> {
-    let mut integration = Integration::new(problem, &problem.scene(x), None, false);
+    of_design(problem, x, false)
+}
+
+/// As [`simulate`], with steps that also resolve the gradients of all functions.
+///
+/// # Errors
+/// If the simulation fails.
+pub(crate) fn simulate_for_gradients(
+    problem: &Problem,
+    x: &[f64],
+) -> Result<Simulation, IntegrationFailure> {
+    of_design(problem, x, true)
+}
+
+fn of_design(
+    problem: &Problem,
+    x: &[f64],
+    gradients: bool,
+) -> Result<Simulation, IntegrationFailure> {
+    let mut integration = Integration::new(problem, &problem.scene(x), None, gradients);
     simulate_with(&mut integration, problem, x)
 }
 

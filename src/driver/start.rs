@@ -76,9 +76,11 @@ fn of_placement(problem: &Problem, x: &[f64], when: &str) -> Vec<String> {
     }
     let moved = moved(&model, &numbering, &start);
     tell(&mut notes, moved);
-    tell(&mut notes, deformed(&model, &numbering, &start, when));
-    let changed = changed(&model, &numbering, &start);
-    tell(&mut notes, changed);
+    // The velocities of a start in equilibrium follow its drives.
+    if when.is_empty() || !driven {
+        tell(&mut notes, deformed(&model, &numbering, &start, when));
+        tell(&mut notes, changed(&model, &numbering, &start));
+    }
     notes.extend(hit(&model, &numbering, &start));
     notes
 }

@@ -191,12 +191,15 @@ fn sum_of(
     };
     let weighed = terms.iter().zip(nodes);
     let total: f64 = weighed.map(|(x, &k)| x.abs() * run.weights[k]).sum();
-    // A quantity that is zero but for round-off is as accurate as its unit in this scene.
-    let noise = match rho {
-        None => NOISE * natural(instant.unit(), &scene.model, run),
-        Some(_) => 0.0,
+    // A quantity that is zero but for round-off is as accurate as its unit in this scene. Inside steps accelerations are
+    // less accurate than the motion.
+    let unit = instant.unit();
+    let least = match (unit, rho) {
+        ("m/s²", rho) => rho.unwrap_or(1.0) * natural(unit, &scene.model, run),
+        (_, None) => NOISE / goal * natural(unit, &scene.model, run),
+        (_, Some(_)) => 0.0,
     };
-    let total = total.max(noise / goal);
+    let total = total.max(least);
     let scale = if total > 0.0 { 1.0 / total } else { 0.0 };
     Some(Sum {
         sizes: terms.iter().map(|x| x.abs() * scale).collect(),

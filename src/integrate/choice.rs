@@ -75,8 +75,12 @@ pub(crate) fn simulate_by<S: SolveScalar>(
         return with(method, Some(reason(true, method).into()));
     }
     match with(NON_STIFF, None) {
-        Err(IntegrationFailure::Stiff { share: None, .. }) => {
-            with(STIFF, Some(reason(false, STIFF).into()))
+        Err(IntegrationFailure::Stiff {
+            share: None, time, ..
+        }) => {
+            let general = reason(false, STIFF);
+            let reason = format!("{general}, h |lambda| = {UNSTABLE} before t = {time:.4} s");
+            with(STIFF, Some(reason))
         }
         Err(IntegrationFailure::Stiff {
             share: Some(share),
@@ -131,10 +135,22 @@ fn measured(found: Option<Measured>) -> String {
         Some(Measured {
             compared: Some((time, work)),
             ..
-        }) => format!(
-            "{general}: from t = {time:.4} s on, {} would take {work:.2} times its work",
-            STIFF.name()
-        ),
+        }) => {
+            let pays = if work < 1.0 {
+                ", too much to start again"
+            } else {
+                ""
+            };
+            format!(
+                "{general}: from t = {time:.4} s on, {} would take {work:.2} times its work{pays}",
+                STIFF.name()
+            )
+        }
+        Some(Measured { largest, .. }) if largest > UNSTABLE => {
+            format!(
+                "{general}: h |lambda| exceeds {UNSTABLE}, the border of stability, in few steps"
+            )
+        }
         Some(Measured { largest, .. }) if largest > 0.0 => format!(
             "{general}: h |lambda| of the steps is at most {largest:.1e}, and stable up to {UNSTABLE}"
         ),

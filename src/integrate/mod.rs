@@ -31,7 +31,8 @@ pub(crate) use quadrature::Samples;
 #[cfg(test)]
 pub(crate) use settings::MEMORY;
 pub(crate) use settings::{LinearSolver, Method, Settings, Spacing, Start};
-pub(crate) use stops::has_kinks;
+pub(crate) use singular::irregular;
+pub(crate) use stops::{has_kinks, stage_time};
 pub(crate) use trajectory::{Tape, Trajectory};
 pub(crate) use work::WorkCounts;
 

@@ -168,7 +168,8 @@ pub(crate) struct Settings {
     /// Memory for the data of a gradient \[bytes\]; a gradient repeats the other steps. Zero if no
     /// gradient is expected: one that follows repeats the motion in [`MEMORY`].
     pub memory: usize,
-    /// Whether derivatives are wanted: adaptive explicit steps then resolve the tangent.
+    /// Whether derivatives are wanted: adaptive steps then resolve the tangent, explicit ones that of the motion and
+    /// implicit ones that of an infinitesimal part.
     pub derivatives: bool,
 }
 

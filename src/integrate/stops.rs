@@ -24,6 +24,17 @@ pub(crate) fn has_kinks<S: Scalar>(model: &Model<S>) -> bool {
     courses(model).any(|function| matches!(function, TimeFunction::Table { .. }))
 }
 
+/// Time of a stage at the fraction `c` of a step of size h from `start`. Among loads or drives with kinks, steps end at
+/// these, and the end of a step counts as before the kink: derivatives in time are those within the step.
+pub(crate) fn stage_time<S: Scalar>((start, h): (S, S), c: f64, kinks: bool) -> S {
+    const BEFORE: f64 = 1.0 - 8.0 * f64::EPSILON;
+    let time = start + h * c;
+    match kinks && c == 1.0 {
+        true => time * BEFORE,
+        false => time,
+    }
+}
+
 /// Largest width of a step that harmonic loads and drives allow, as a fraction of the duration.
 pub(crate) fn widest<S: Scalar>(model: &Model<S>, duration: f64) -> f64 {
     courses(model).fold(1.0, |widest: f64, function| match function {
@@ -38,7 +49,7 @@ pub(crate) fn widest<S: Scalar>(model: &Model<S>, duration: f64) -> f64 {
 /// Kinks of loads and drives at which steps of a method must end: ascending fractions of the
 /// duration. A break of derivative p of a force, inside steps of size h, makes derivatives in the
 /// duration wrong by h^p. Formulas start anew at a kink, so only breaks with p below their order
-/// count for them.
+/// count for them, or below two.
 pub(crate) fn kinks<S: Scalar>(model: &Model<S>, duration: f64, method: Method) -> Vec<f64> {
     let mut all = Vec::new();
     for function in courses(model) {
@@ -52,7 +63,7 @@ pub(crate) fn kinks<S: Scalar>(model: &Model<S>, duration: f64, method: Method) 
             continue;
         };
         let of = (*interpolation, *smoothness);
-        if method.is_adaptive() || continuous(of) + 1 < method.order() {
+        if method.is_adaptive() || continuous(of) + 1 < method.order().max(2) {
             all.extend(breaks(times, of).into_iter().map(|at| at / duration));
         }
     }

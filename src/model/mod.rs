@@ -50,6 +50,18 @@ pub(crate) struct Model<S> {
 parameters!(struct Model {; gravity, bodies, joints, loads, flexible });
 
 impl<S: Scalar> Model<S> {
+    /// Whether loads or drives may supply energy.
+    pub(crate) fn is_fed(&self) -> bool {
+        let feeds = |load: &Load<S>| {
+            matches!(
+                load.kind,
+                LoadKind::Force { .. } | LoadKind::Torque { .. } | LoadKind::Distributed(_)
+            )
+        };
+        let driven = self.joints.iter().any(|joint| !joint.drives.is_empty());
+        driven || self.loads.iter().any(feeds)
+    }
+
     /// Whether energy is conserved: only springs and gravity do work.
     pub(crate) fn conserves_energy(&self) -> bool {
         let conserves = |load: &Load<S>| match &load.kind {

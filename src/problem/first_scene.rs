@@ -11,7 +11,7 @@ use crate::model::{Joint, JointKind, RigidBody};
 use crate::system::failure::AssemblyFailure;
 use crate::system::kkt::SaddlePoint;
 use crate::system::placement::length_scale;
-use crate::system::{Numbering, dead_points, initial, loads, redundancy};
+use crate::system::{Numbering, dead_points, initial, loads, rank, redundancy};
 
 /// Memory of an optimisation per pair of variables \[bytes\]: about forty matrices.
 const OF_PAIR: usize = 350;
@@ -152,7 +152,15 @@ pub(super) fn unassembled(problem: &Problem) -> Option<Finding> {
     let numbering = Numbering::new(&model);
     let mut saddle = SaddlePoint::new(&model, &numbering);
     let failure = initial::solve(&model, &numbering, &mut saddle).err()?;
-    Some(cannot_assemble(&failure))
+    // Round-off in place of an inertia spoils the assembly, too.
+    let spins = rank::spinning_without_inertia(&model);
+    Some(cannot_assemble(&spins.unwrap_or(failure)))
+}
+
+/// The fault of thin bodies that spin without inertia in the lowered scene.
+pub(super) fn without_inertia(problem: &Problem) -> Option<Finding> {
+    let model = problem.scene(&problem.start()).model;
+    Some(cannot_assemble(&rank::spinning_without_inertia(&model)?))
 }
 
 /// The fault of a scene that cannot start.

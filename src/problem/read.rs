@@ -5,7 +5,9 @@ use super::check::check;
 use super::elements;
 use super::fault::Faults;
 use super::finding::{Finding, Part};
-use super::first_scene::{collapsed, driven_twice, oblique, too_many, unassembled, unstarted};
+use super::first_scene::{
+    collapsed, driven_twice, oblique, too_many, unassembled, unstarted, without_inertia,
+};
 use super::holds;
 use super::modal;
 use super::overrides::Override;
@@ -168,7 +170,10 @@ pub(super) fn parse(written: &str, file: &str, overrides: &[Override]) -> Result
                 Some(finding) => faults(vec![finding]),
                 None => {
                     problem.lowering = Some(lowering(&problem));
-                    Ok(problem)
+                    match without_inertia(&problem) {
+                        Some(finding) => faults(vec![finding]),
+                        None => Ok(problem),
+                    }
                 }
             }
         }

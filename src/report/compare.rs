@@ -304,7 +304,14 @@ fn objective_rows(rows: &mut Vec<Row>, new: &Optimum, baseline: &Optimum, tolera
     rows.extend(unit_row(&b.function, &a.unit, &b.unit));
     rows.push(number("value", a.value, b.value));
     match (new.start_objective, baseline.start_objective) {
-        (Some(a), Some(b)) => rows.push(number("at the start", a, b)),
+        (Some(a), Some(b)) => {
+            let mut row = number("at the start", a, b);
+            // The same optimum may be found from another start.
+            if row.verdict == Verdict::Moved && !starts_alike(new, baseline) {
+                row.verdict = Verdict::Warning;
+            }
+            rows.push(row);
+        }
         (None, None) => {}
         (a, b) => rows.push(lone_row("objective", "at the start", a, b)),
     }
@@ -313,6 +320,15 @@ fn objective_rows(rows: &mut Vec<Row>, new: &Optimum, baseline: &Optimum, tolera
         (None, None) => {}
         (a, b) => rows.push(lone_row("objective", "true maximum", a, b)),
     }
+}
+
+/// Whether both runs started from the same design.
+fn starts_alike(new: &Optimum, baseline: &Optimum) -> bool {
+    let pairs =
+        (baseline.design.iter()).filter_map(|(name, own)| Some((new.design.get(name)?, own)));
+    pairs
+        .into_iter()
+        .all(|(new, own)| (new.start - own.start).abs() <= SAME_BOUND * design_unit(own))
 }
 
 /// Status of a run that found an optimum.

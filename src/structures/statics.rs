@@ -38,6 +38,9 @@ pub enum StaticFailure {
     /// A name that is no set of the mesh.
     #[error(transparent)]
     UnknownSet(#[from] UnknownSet),
+    /// No unknown is left.
+    #[error("the supports hold every node, so nothing can be deformed; leave nodes free")]
+    Held,
     /// Part of the structure can move without strain.
     #[error(
         "the structure is a mechanism: {dof} of node {node} at ({:.4}, {:.4}, {:.4}) m moves \
@@ -92,13 +95,16 @@ impl StaticProblem {
     /// Analyses a structure with supports.
     ///
     /// # Errors
-    /// [`UnknownSet`] if a support names no set of the mesh.
+    /// [`StaticFailure::UnknownSet`] if a support names no set of the mesh, [`StaticFailure::Held`] if no node is free.
     pub fn new(
         structure: &Structure<f64>,
         supports: &[Support],
         node_unknowns: NodeUnknowns,
-    ) -> Result<Self, UnknownSet> {
+    ) -> Result<Self, StaticFailure> {
         let assembly = Assembly::new(structure, supports, node_unknowns)?;
+        if assembly.unknowns.count == 0 {
+            return Err(StaticFailure::Held);
+        }
         Ok(Self {
             solver: SparseCholesky::new(&assembly.pattern),
             values: vec![0.0; assembly.pattern.entries()],

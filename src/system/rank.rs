@@ -2,10 +2,10 @@
 
 use super::failure::AssemblyFailure;
 use super::numbering::Numbering;
-use super::placement::length_scale;
+use super::placement::{guess, length_scale};
 use super::redundancy;
 use crate::math::{Parameters, Scalar};
-use crate::model::Model;
+use crate::model::{Mobility, Model, RigidBody};
 use nalgebra::DMatrix;
 
 /// Singular values below this, relative to the largest, are zero.
@@ -64,6 +64,24 @@ pub(crate) fn explain<S: Scalar>(model: &Model<S>, q: &[S]) -> AssemblyFailure {
         constraints: joint_of.len(),
         joints,
     }
+}
+
+/// Names thin bodies that nothing keeps from spinning about their own axes where they are placed, with no inertia but
+/// round-off.
+pub(crate) fn spinning_without_inertia(model: &Model<f64>) -> Option<AssemblyFailure> {
+    let thin = |body: &RigidBody<f64>| {
+        let values = body.inertia.symmetric_eigenvalues();
+        body.mass > 0.0 && values.min() <= LOOSE * values.max()
+    };
+    // Planar motions have no spin about axes in their plane.
+    let spatial = |body: &&RigidBody<f64>| body.mobility == Mobility::spatial();
+    if !model.bodies.iter().filter(spatial).any(thin) {
+        return None;
+    }
+    let (g, _) = redundancy::unit_rows(model, &guess(model).0);
+    let known = g.iter().all(|x| x.is_finite());
+    let found = known.then(|| without_inertia(model, &g))?;
+    matches!(found, AssemblyFailure::WithoutInertia { .. }).then_some(found)
 }
 
 /// Names the bodies that can move without inertia; `g` has the unit rows as columns. If there are

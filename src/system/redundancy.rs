@@ -25,7 +25,7 @@ use nalgebra::DMatrix;
 const OPENED: f64 = 1e-6;
 /// Factor of the tolerance of the input by which rounded rows may be open in other positions and designs:
 /// an axis that is off turns against its counterpart.
-pub(crate) const IN_MOTION: f64 = 4.0;
+const IN_MOTION: f64 = 4.0;
 /// Relative size of G below which a direction of the multipliers is not in its range.
 const DAMPED: f64 = 1e-6;
 

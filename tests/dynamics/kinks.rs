@@ -102,11 +102,11 @@ fn agrees(problem: &Problem, what: &str) {
     }
 }
 
-/// dx/dT = v(T), dv/dT = F(T)/m and d(∫ x dt)/dT = x(T) for durations between and beyond the kinks.
+/// dx/dT = v(T), dv/dT = F(T)/m and d(∫ x dt)/dT = x(T) for durations between, at and beyond the kinks.
 #[test]
 fn derivatives_in_a_designed_duration_by_all_methods() {
     for (key, steps, method, is_exact) in methods() {
-        for duration in [1.45, 2.5] {
+        for duration in [1.0, 1.45, 2.0, 2.5] {
             let mut file = pushed(triangle(), json!({"duration": duration}));
             with_method(&mut file, (key, &steps, &method));
             file["variables"] =
@@ -283,9 +283,8 @@ fn values_are_smooth_where_the_end_passes_a_kink() {
                 steps_at_2.push(at.function(0).value);
             }
         }
-        // At 2 s, 1.2 s, 0.8 s and back; implicit Euler is no better on kinks than elsewhere.
-        let expected = if method["bdf"]["order"] == 1 { 0 } else { 4 };
-        assert_eq!(anew, expected, "{method}");
+        // At 2 s, 1.2 s, 0.8 s and back.
+        assert_eq!(anew, 4, "{method}");
         // The steps are made anew there, so the value jumps by the difference of two errors of steps.
         let way = steps_at_2[2] - steps_at_2[0] - 2e-7;
         assert!(way.abs() <= bound, "{method}: {way}");

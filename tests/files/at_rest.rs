@@ -2,6 +2,7 @@
 //! gradients that the steps do not resolve, which are refused by name.
 
 use crate::tests::reference::documents::optimised;
+use flexbody::driver::check;
 use flexbody::driver::evaluate::Evaluated;
 use flexbody::driver::resolved;
 use flexbody::integrate::{Settings, Spacing, simulate};
@@ -71,6 +72,8 @@ impl Pendulum {
     }
 }
 
+const RADAU: &str = r#", "method": {"radau": {"stages": 3}}"#;
+
 /// Pendulums that hang, or stand, at rest, in other units, planes, durations and tolerances. At the
 /// default tolerance their derivatives have five digits; fewer at a coarser one, more at a finer.
 #[test]
@@ -87,14 +90,42 @@ fn pendulums_at_rest_have_the_derivatives_of_small_oscillations() {
     };
     let cases = [
         (hanging(3.1, ""), 1e-5),
+        (
+            // Nearly a point.
+            Pendulum {
+                inertia: 1e-9,
+                ..hanging(2.0, "")
+            },
+            1e-5,
+        ),
         (hanging(14.0, ""), 1e-5),
         (hanging(5.0, r#", "tolerance": 1e-6"#), 2e-3),
         (hanging(5.0, r#", "tolerance": 1e-12"#), 1e-8),
         (hanging(3.0, r#", "method": "dop853""#), 1e-5),
+        (hanging(2.0, RADAU), 1e-5),
+        (hanging(13.0, RADAU), 1e-5),
+        (
+            hanging(6.0, r#", "method": {"radau": {"stages": 2}}"#),
+            1e-4,
+        ),
+        (
+            hanging(
+                4.0,
+                r#", "method": {"radau": {"stages": 3}}, "tolerance": 1e-6"#,
+            ),
+            1e-3,
+        ),
         (
             Pendulum {
                 l: -0.3,
                 ..hanging(1.5, "")
+            },
+            1e-5,
+        ),
+        (
+            Pendulum {
+                l: -0.3,
+                ..hanging(1.5, RADAU)
             },
             1e-5,
         ),
@@ -138,7 +169,34 @@ fn pendulums_at_rest_have_the_derivatives_of_small_oscillations() {
             };
             assert!(error < tolerance * size, "case {k}: {found:?}, {exact}");
         }
-        assert!(steps < 1000, "case {k}: {steps} steps");
+        assert!(steps < 1200, "case {k}: {steps} steps");
+    }
+}
+
+/// The bob of a pendulum may have hardly any inertia of its own: adjoint and complex step agree to round-off.
+#[test]
+fn points_on_strings_have_exact_derivatives() {
+    for inertia in [1e-12, 1e-9, 1e-7, 1e-5] {
+        for (down, axis) in [
+            ([0.0, -1.0, 0.0], [0.0, 0.0, 1.0]),
+            ([0.6, 0.0, 0.8], [-0.64, 0.6, 0.48]),
+        ] {
+            let problem = Pendulum {
+                m: 1.0,
+                inertia,
+                l: 0.5,
+                g: 9.81,
+                down,
+                axis,
+                duration: 2.0,
+                simulation: "",
+            }
+            .problem();
+            for own in check(&problem, &problem.start()).expect("runs") {
+                let off = (own.adjoint - own.complex_step).abs();
+                assert!(off < 1e-10 * own.complex_step.abs(), "{inertia}: {own:?}");
+            }
+        }
     }
 }
 
@@ -205,6 +263,11 @@ fn masses_at_rest_on_springs_have_the_derivative_of_the_response_to_a_step() {
         ([1.0, 50.0, 300.0], [0.0, 0.0, 1.0], (2.0, false), ""),
         ([3.0, 1e4, 5.0], x, (0.4, true), r#", "tolerance": 1e-10"#),
         ([1e-3, 4.0, 1e-4], x, (1.1, true), r#", "method": "dop853""#),
+        ([1.0, 1e4, 0.0], x, (0.7, true), RADAU),
+        ([1.0, 1e5, 0.0], [0.6, 0.0, 0.8], (1.7, false), RADAU),
+        ([1.0, 10.0, 1000.0], x, (0.5, true), RADAU),
+        // Stiff, so that an implicit method is chosen.
+        ([1.0, 1e3, 1e6], x, (8.0, false), ""),
     ]
     .into_iter()
     .enumerate()
@@ -214,6 +277,41 @@ fn masses_at_rest_on_springs_have_the_derivative_of_the_response_to_a_step() {
         let exact = by_force(law, run.0);
         let error = (found[0][0] - exact).abs();
         assert!(error < 1e-4 / law[1], "case {k}: {found:?}, {exact}");
+    }
+}
+
+/// A damper so stiff that an implicit method is chosen, and a pendulum beside it, both at rest: steps pass over the
+/// damper's part and resolve the pendulum.
+#[test]
+fn stiff_scenes_at_rest_resolve_what_vibrates() {
+    for (duration, damping) in [(8.0, 1e6), (20.0, 1e5)] {
+        let problem = parse(&format!(
+            r#"{{"version": 1, "name": "stiff", "gravity": [0, -9.81, 0],
+            "bodies": {{"bob": {{"mass": 1, "inertia": {{"xx": 0.01, "yy": 0.01, "zz": 0.01}},
+                    "points": {{"pin": [0, 0.5, 0]}}, "place": {{"put": "pin", "at": [0, 0, 0]}}}},
+                "slider": {{"mass": 1, "inertia": {{"xx": 1, "yy": 1, "zz": 1}}, "place": {{"at": [3, 0, 0]}}}}}},
+            "joints": {{"hinge": {{"revolute": {{"between": ["bob", "ground"], "at": [0, 0, 0], "axis": [0, 0, 1]}}}},
+                "guide": {{"prismatic": {{"between": ["slider", "ground"], "at": [3, 0, 0], "axis": [1, 0, 0]}}}}}},
+            "loads": {{"F": {{"force": {{"body": "bob", "direction": [1, 0, 0], "magnitude": 0}}}},
+                "k": {{"spring": {{"between": ["slider", "ground"], "at": {{"a": [3, 0, 0], "b": [5, 0, 0]}},
+                    "rest_length": 2, "stiffness": 1000, "damping": {damping}}}}}}},
+            "simulation": {{"duration": {duration}}},
+            "functions": {{"angle": {{"final": {{"angle": {{"joint": "hinge"}}}}}},
+                "x": {{"final": {{"slide": {{"joint": "guide"}}}}}}}},
+            "variables": {{"F": {{"path": "/loads/F/force/magnitude"}}}},
+            "objective": {{"minimise": "angle"}}}}"#
+        ));
+        let at = Evaluated::new(&problem, &problem.start()).expect("runs");
+        assert!(
+            at.run.method.name().starts_with("radau"),
+            "{}",
+            at.run.method.name()
+        );
+        let (found, _) = at.gradients(&problem, &[0, 1]).expect("differentiates");
+        let (inertia, omega) = (0.26, (9.81 * 0.5 / 0.26_f64).sqrt());
+        let exact = 0.5 * (1.0 - (omega * duration).cos()) / (inertia * omega * omega);
+        assert!((found[0][0] - exact).abs() < 2e-5, "{found:?}, {exact}");
+        assert!(at.run.grid.steps() < 2000, "{}", at.run.grid.steps());
     }
 }
 

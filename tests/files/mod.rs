@@ -42,3 +42,4 @@ mod stationary;
 mod stress_pictures;
 mod thickness_sheet;
 mod trebuchets;
+mod unfollowed;

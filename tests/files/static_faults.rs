@@ -456,3 +456,28 @@ fn moments_along_normals_are_refused() {
     );
     assert!(told("x1y0", [1.0, 3.0, 1.01], "five", Some(panel)).contains("along the normal"));
 }
+
+/// Where the supports hold every node, of shells or beams, for load cases or frequencies, it is said.
+#[test]
+fn structures_without_a_free_node_are_told() {
+    for (base, name) in [(plate as fn() -> Value, "plate"), (portal, "portal")] {
+        let mut document = base();
+        let structures = document["structures"].as_object_mut().expect("structures");
+        for own in structures.values_mut() {
+            own["supports"] = json!({"all": {"nodes": ["all"]}});
+        }
+        let found = match Problem::parse(&document.to_string(), "held.json", &[]) {
+            Ok(problem) => match StaticDesign::of(
+                &problem,
+                problem.statics.as_ref().expect("structures"),
+                &problem.start(),
+                None,
+            ) {
+                Ok(_) => "sound".to_owned(),
+                Err(failure) => failure.to_string(),
+            },
+            Err(faults) => faults.to_string(),
+        };
+        assert!(found.contains("hold every node"), "{name}: {found}");
+    }
+}

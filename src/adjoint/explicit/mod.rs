@@ -29,7 +29,7 @@ use crate::integrate::explicit::step::StepFailure;
 use crate::integrate::explicit::tableau::{A, ALL, C, END, STAGES};
 use crate::integrate::explicit::{NodeView, Replayer, Tape};
 use crate::integrate::replay::Replay;
-use crate::integrate::{IntegrationFailure, Trajectory, WorkCounts};
+use crate::integrate::{IntegrationFailure, Trajectory, WorkCounts, has_kinks, stage_time};
 use crate::system::accelerations::Accelerations;
 use crate::system::kkt::SaddlePoint;
 use sweep::Sweep;
@@ -49,6 +49,7 @@ pub(super) fn gradients(
     let mut replay = Replay::new(tape, run.grid.steps(), || Replayer::new(model, run));
     let mut sample = run.last();
     let mut counts = WorkCounts::default();
+    let kinks = has_kinks(model);
     for n in (1..=run.grid.steps()).rev() {
         if run.limits.is_over() {
             return Err(IntegrationFailure::Interrupted);
@@ -85,7 +86,8 @@ pub(super) fn gradients(
             let (nq, nv, nc) = (from.q.len(), from.v.len(), from.lambda.len());
             let (q, v) = (row(data.q, nq, i), row(data.v, nv, i));
             let rate = run.grid.rate(begin) + run.grid.width(n) * growth * C[i];
-            field.set_state(q, v, run.duration * begin + h * C[i]);
+            let time = stage_time((run.duration * begin, h), C[i], kinks);
+            field.set_state(q, v, time);
             field.factorise()?;
             let found = (row(data.a, nv, i), row(data.lambda, nc, i));
             for sweep in sweeps.iter_mut().filter(|sweep| sweep.touched[i]) {

@@ -20,7 +20,6 @@ use crate::integrate::{close, watch};
 use crate::linalg::{SingularMatrix, SolveScalar};
 use crate::model::Model;
 use crate::system::initial::InitialState;
-use crate::system::redundancy::IN_MOTION;
 use crate::system::redundant_rows::EXCHANGE_WEIGHT;
 use crate::system::{BodyMotion, Numbering};
 
@@ -33,6 +32,8 @@ const UNSTABLE: f64 = 0.1;
 /// the last.
 const LOOKED_AT: [f64; 2] = [0.2, 0.75];
 const OPEN: f64 = 100.0;
+/// By so many times the tolerance of rounded rows may joints open where others are imposed instead.
+const JUMP: f64 = 100.0;
 const OPEN_GIVEN: f64 = 1e3;
 const LEAST_ERROR: f64 = 1e-10;
 
@@ -176,8 +177,7 @@ pub(crate) fn march<S: SolveScalar>(
                     stepper.dense_stages((from.view(), to.view()), (start, h))?;
                     let error = controller.allowed().max(LEAST_ERROR);
                     let open = open(&mut stepper, &scale, from.view(), (start, h));
-                    // Rounded rows that are exchanged for others jump by their misfit.
-                    let slack = IN_MOTION * model.slack();
+                    let slack = JUMP * model.slack();
                     let limit = slack.max(error * if given { OPEN_GIVEN } else { OPEN });
                     if open > limit || open.is_nan() {
                         return Err(StepFailure::Open);

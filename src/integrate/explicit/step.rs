@@ -2,6 +2,7 @@
 
 use super::record::{Node, NodeView, StepData, add_rows};
 use super::tableau::{A, ALL, B, C, E3, E5, END, STAGES};
+use crate::integrate::{has_kinks, stage_time};
 use crate::linalg::{SingularMatrix, SolveScalar};
 use crate::math::{Vec3, rotation};
 use crate::model::Model;
@@ -47,6 +48,8 @@ pub(crate) struct Stepper<'a, S> {
     /// The results of the last step.
     pub data: StepData<Vec<S>>,
     length: f64,
+    /// Whether loads or drives have kinks.
+    kinks: bool,
     residual: Vec<S>,
     moved: Vec<S>,
     /// Workspace: positions, and two vectors of velocities.
@@ -60,6 +63,7 @@ impl<'a, S: SolveScalar> Stepper<'a, S> {
             field: Accelerations::new(model, numbering),
             data: StepData::new(numbering),
             length: placement::length_scale(model),
+            kinks: has_kinks(model),
             residual: vec![S::zero(); numbering.velocities() + numbering.constraints()],
             moved: vec![S::zero(); numbering.positions()],
             scratch: (
@@ -144,7 +148,8 @@ impl<'a, S: SolveScalar> Stepper<'a, S> {
         at_v.copy_from_slice(node.v);
         add_rows(at_q, h, A[i], &data.qdot, (nq, 0));
         add_rows(at_v, h, A[i], &data.a, (nv, 0));
-        self.field.set_state(at_q, at_v, start + h * C[i]);
+        let time = stage_time((start, h), C[i], self.kinks);
+        self.field.set_state(at_q, at_v, time);
         self.field.factorise()?;
         bodies::rates(self.field.numbering, at_q, at_v, &mut data.qdot[q]);
         let (a, lambda) = (&mut data.a[v], &mut data.lambda[c]);

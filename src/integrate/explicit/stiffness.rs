@@ -4,7 +4,7 @@
 //! so smooth that round-off hides |λ|. With a smaller h |λ| stiffness is still possible: at tight
 //! tolerances, vibration that does not show may bound the steps. Then Radau IIA marches on from the
 //! present state until it has spent a fixed amount of work, and the paces of both methods are
-//! compared. Work is counted in evaluations of the accelerations, so the decision does not depend
+//! compared. Elastic bodies are stiff in any case where stability bounds the steps. Work is counted in evaluations of the accelerations, so the decision does not depend
 //! on the machine.
 
 use super::record::NodeView;
@@ -79,6 +79,10 @@ impl Streak {
                 self.with = 0;
             }
         }
+        self.has_enough()
+    }
+
+    fn has_enough(&self) -> bool {
         self.with >= STIFF
     }
 }
@@ -138,8 +142,9 @@ impl Stiffness {
         let size = if known { h * (df / dy).sqrt() } else { 0.0 };
         self.measured.largest = self.measured.largest.max(size);
         let beyond = |most: f64| size > most;
-        if self.watch == Watch::Stability {
-            return self.unstable.count(beyond(UNSTABLE));
+        let unstable = self.unstable.count(beyond(UNSTABLE));
+        if self.watch == Watch::Stability || unstable && self.flexible {
+            return unstable;
         }
         let steps = run.grid.steps();
         if steps.is_multiple_of(RECENT) {
@@ -161,7 +166,10 @@ impl Stiffness {
         at: NodeView<S>,
         run: &Trajectory<S>,
     ) -> Option<Option<f64>> {
-        if self.watch == Watch::Stability {
+        // Fast vibrations of elastic bodies, fed by explicit steps at the border of stability, would slow down the
+        // other method, too.
+        let fed = self.flexible && self.unstable.has_enough();
+        if self.watch == Watch::Stability || fed {
             return Some(None);
         }
         let reached = run.grid.reached();

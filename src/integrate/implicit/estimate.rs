@@ -108,38 +108,13 @@ impl<'a> Estimate<'a> {
         error.max(self.drift(h, (scale, speeds)))
     }
 
-    /// Sets the estimated error (δy, h δv) of a step of size h from its start and its stages. The difference of
-    /// the embedded formula is filtered by the real matrix: K δ = B (b̂_0 h ẏ_n + Σ e_i Z_i) / (b̂_0 h) in the
-    /// equations of motion, and 0 in the constraints (Hairer & Wanner 1996, eq. IV.8.19 and 20).
+    /// Sets the estimated error (δy, h δv) of a step of size h from its start and its stages, filtered by the real
+    /// matrix.
     fn filter(&mut self, factors: &mut StageFactors, h: f64) {
-        let numbering = self.numbering;
-        let nv = numbering.velocities();
-        let (first, weights) = &self.scheme.error;
-        let [dq, dv] = &mut self.combined;
-        let start = |out: &mut [f64], rates: &[f64]| {
-            let rates = out.iter_mut().zip(rates);
-            rates.for_each(|(out, x)| *out = first * h * x);
-        };
-        start(dq, &self.from.qdot);
-        start(dv, &self.from.vdot);
-        let add = |out: &mut [f64], e: f64, increments: &[f64]| {
-            let increments = out.iter_mut().zip(increments);
-            increments.for_each(|(out, z)| *out += e * z);
-        };
-        for (stage, &e) in self.stages.iter().zip(weights) {
-            add(dq, e, &stage.dq);
-            add(dv, e, &stage.dv);
-        }
-        let end = &self.stages[self.stages.len() - 1].q;
-        self.filtered.fill(0.0);
-        let (f1, rest) = self.filtered.split_at_mut(nv);
-        bodies::velocity_of_rates(numbering, end, dq, f1);
-        f1.iter_mut().for_each(|x| *x /= *first);
-        // Rows of the dynamics are scaled by h² / m, those of the kinematics by h.
-        bodies::mass_product(self.model, numbering, dv, &mut rest[..nv]);
-        flexible::add_mass_product_at(self.model, numbering, end, dv, &mut rest[..nv]);
-        let scale = h / (first * factors.equations.mass());
-        rest[..nv].iter_mut().for_each(|x| *x *= scale);
+        let all = (self.model, self.numbering, self.scheme);
+        let out = (&mut self.combined, &mut self.filtered[..]);
+        let h = (h, factors.equations.mass());
+        embedded(all, (&self.from, &self.stages), h, out);
         factors.filter(&mut self.filtered);
     }
 
@@ -159,4 +134,40 @@ impl<'a> Estimate<'a> {
         joints::rates(&at, &mut self.rows);
         open.max(largest(&self.rows) / speeds[0])
     }
+}
+
+/// Sets the right-hand side B (b̂_0 h ẏ_n + Σ e_i Z_i) / (b̂_0 h) of the estimated error K δ in the equations of motion, and 0
+/// in the constraints (Hairer & Wanner 1996, eq. IV.8.19 and 20), for a step of size h of equations scaled by a mass.
+pub(super) fn embedded<S: SolveScalar>(
+    (model, numbering, scheme): (&Model<S>, &Numbering, &Scheme),
+    (from, stages): (&Stage<S>, &[Stage<S>]),
+    (h, mass): (f64, f64),
+    ([dq, dv], out): (&mut [Vec<S>; 2], &mut [S]),
+) {
+    let nv = numbering.velocities();
+    let (first, weights) = &scheme.error;
+    let start = |out: &mut [S], rates: &[S]| {
+        let rates = out.iter_mut().zip(rates);
+        rates.for_each(|(out, &x)| *out = x * (first * h));
+    };
+    start(dq, &from.qdot);
+    start(dv, &from.vdot);
+    let add = |out: &mut [S], e: f64, increments: &[S]| {
+        let increments = out.iter_mut().zip(increments);
+        increments.for_each(|(out, &z)| *out += z * e);
+    };
+    for (stage, &e) in stages.iter().zip(weights) {
+        add(dq, e, &stage.dq);
+        add(dv, e, &stage.dv);
+    }
+    let end = &stages[stages.len() - 1].q;
+    out.fill(S::zero());
+    let (f1, rest) = out.split_at_mut(nv);
+    bodies::velocity_of_rates(numbering, end, dq, f1);
+    f1.iter_mut().for_each(|x| *x = *x / *first);
+    // Rows of the dynamics are scaled by h² / m, those of the kinematics by h.
+    bodies::mass_product(model, numbering, dv, &mut rest[..nv]);
+    flexible::add_mass_product_at(model, numbering, end, dv, &mut rest[..nv]);
+    let scale = h / (first * mass);
+    rest[..nv].iter_mut().for_each(|x| *x = *x * scale);
 }

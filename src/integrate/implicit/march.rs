@@ -12,7 +12,7 @@ use crate::integrate::grid::{Grid, SamplePlace, place};
 use crate::integrate::quadrature;
 use crate::integrate::quadrature::{Due, Samples};
 use crate::integrate::scale::Scale;
-use crate::integrate::settings::{Method, Settings};
+use crate::integrate::settings::{Method, Settings, Spacing};
 use crate::integrate::singular::{MOST_IMPLICIT, Steadiness};
 use crate::integrate::trajectory::{self, Trajectory};
 use crate::integrate::{close, watch};
@@ -136,6 +136,10 @@ fn march_until<S: SolveScalar>(
         (numbering, &scheme),
         estimates,
     );
+    let adaptive = matches!(settings.spacing, Spacing::Tolerance(_));
+    if S::INFINITESIMAL && estimates && adaptive && settings.derivatives {
+        solver.resolve_tangent();
+    }
     let mut past = Past::new(numbering, first.clone(), (method, scheme.stages()));
     let mut inside = Stage::zero(numbering);
     let block = Block::new(numbering, first, scheme.stages());

@@ -18,6 +18,7 @@ pub(crate) mod solver;
 pub(crate) mod split;
 mod stage_factors;
 pub(crate) mod stage_newton;
+mod tangent;
 pub(crate) mod tape;
 pub(crate) mod turned;
 

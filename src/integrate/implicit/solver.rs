@@ -7,10 +7,12 @@ use super::newton::{self, Newton};
 use super::predict::Past;
 use super::radau::Scheme;
 use super::stage_newton::{self, StageNewton};
+use super::tangent::TangentError;
 use crate::integrate::failure::IntegrationFailure;
 use crate::integrate::scale::Scale;
 use crate::integrate::settings::{LinearSolver, Method};
 use crate::integrate::work::WorkCounts;
+use crate::integrate::{has_kinks, stage_time};
 use crate::linalg::SolveScalar;
 use crate::model::Model;
 use crate::system::initial::InitialState;
@@ -51,11 +53,14 @@ pub(super) struct Solver<'a, S> {
     scheme: &'a Scheme,
     /// Whether some body has shells.
     shells: bool,
+    /// Whether loads or drives have kinks.
+    kinks: bool,
     /// Newton's method for formulas, created when needed.
     one: Option<Newton<'a, S>>,
     /// Newton's method for Radau IIA, created when needed.
     coupled: Option<StageNewton<'a, S>>,
     estimate: Option<Estimate<'a>>,
+    tangent: Option<TangentError<'a, S>>,
     /// Redundant rows, which are not imposed.
     left_out: RedundantRows,
     /// Memory of a formula, for q and v.
@@ -83,14 +88,22 @@ impl<'a, S: SolveScalar> Solver<'a, S> {
             numbering,
             scheme,
             shells: flexible::has_shells(model),
+            kinks: has_kinks(model),
             one: None,
             coupled: None,
             estimate: estimates.then(|| Estimate::new(real, numbering, scheme)),
+            tangent: None,
             left_out: RedundantRows::default(),
             memory: lengths.map(|n| vec![vec![S::zero(); n]; memory_size(method)]),
             history: History::new(numbering),
             stages: vec![Stage::zero(numbering); scheme.stages()],
         }
+    }
+
+    /// Judges the tangent, too.
+    pub(crate) fn resolve_tangent(&mut self) {
+        let tangent = TangentError::new(self.model, self.numbering, self.scheme);
+        self.tangent = Some(tangent);
     }
 
     /// The data that Newton's method keeps from step to step.
@@ -141,6 +154,9 @@ impl<'a, S: SolveScalar> Solver<'a, S> {
         if let Some(estimate) = &mut self.estimate {
             estimate.leave_out(rows);
         }
+        if let Some(tangent) = &mut self.tangent {
+            tangent.leave_out(rows);
+        }
     }
 
     /// Discards the factors of rejected steps.
@@ -160,7 +176,7 @@ impl<'a, S: SolveScalar> Solver<'a, S> {
         counts: &mut WorkCounts,
     ) -> Result<usize, IntegrationFailure> {
         let (model, real, numbering) = (self.model, self.real, self.numbering);
-        let stages = &mut self.stages;
+        let (stages, kinks) = (&mut self.stages, self.kinks);
         if in_part == 1 {
             past.forget_increments();
         }
@@ -170,7 +186,7 @@ impl<'a, S: SolveScalar> Solver<'a, S> {
             let place = |stages: &mut [Stage<S>], from: &Stage<S>| {
                 for (stage, &c) in stages.iter_mut().zip(nodes) {
                     stage.project_increments(numbering, from);
-                    stage.time = start + h * c;
+                    stage.time = stage_time((start, h), c, kinks);
                 }
             };
             place(stages, &past.from);
@@ -207,7 +223,7 @@ impl<'a, S: SolveScalar> Solver<'a, S> {
         let stage = &mut stages[0];
         past.predict(numbering, h, stage);
         stage.project_increments(numbering, &past.from);
-        stage.time = start + h;
+        stage.time = stage_time((start, h), 1.0, kinks);
         self.history.set(&formula, &self.memory, h);
         let history = &self.history;
         let linear = self.linear;
@@ -223,7 +239,7 @@ impl<'a, S: SolveScalar> Solver<'a, S> {
             found.or_else(|_| {
                 guess(past, numbering, h, stage);
                 stage.project_increments(numbering, &past.from);
-                stage.time = start + h;
+                stage.time = stage_time((start, h), 1.0, kinks);
                 newton.forget();
                 newton.solve(stage, history, h, at, counts)
             })
@@ -259,7 +275,15 @@ impl<'a, S: SolveScalar> Solver<'a, S> {
     pub(crate) fn error(&mut self, from: &Stage<S>, h: f64, scale: &Scale) -> f64 {
         match (&mut self.coupled, &mut self.estimate) {
             (Some(newton), Some(estimate)) => {
-                estimate.error(newton, (from, &self.stages), h, scale)
+                let step = (from, &self.stages[..]);
+                let of_motion = estimate.error(newton, step, h, scale);
+                let of_tangent = (self.tangent.as_mut())
+                    .map_or(0.0, |tangent| tangent.error(newton, step, h, scale));
+                // Neither NaN is lost.
+                match of_motion >= of_tangent || of_motion.is_nan() {
+                    true => of_motion,
+                    false => of_tangent,
+                }
             }
             _ => 0.0,
         }
@@ -269,6 +293,9 @@ impl<'a, S: SolveScalar> Solver<'a, S> {
     pub(crate) fn count(&self, counts: &mut WorkCounts) {
         if let Some(estimate) = &self.estimate {
             estimate.count(counts);
+        }
+        if let Some(tangent) = &self.tangent {
+            tangent.count(counts);
         }
     }
 }

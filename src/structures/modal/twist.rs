@@ -12,10 +12,11 @@
 //! So a moment about the strong axis bends the twisted beam sideways: it buckles laterally (Timoshenko & Gere 1961,
 //! ch. 6).
 //!
-//! **No locking.** κ3 of n functions has n coordinates of its own. It is taken at n points, where they can
-//! take any values: products, whose degree is higher, are relieved there. The points are those of Gauss for polynomials, and
-//! k/(n + 1) for sines; the sums of the linear terms are exact. Between the points a curvature is the combination of its
-//! functions that has their values there. κ1 and κ2 likewise.
+//! **No locking.** κ3 of n functions has n coordinates of its own, which relieve the combination of its functions that is
+//! nearest to the products, and no more: κ3 is that combination. It is found by sums over m points, where m is the
+//! largest of the three numbers of functions: those of Gauss for polynomials, and k/(m + 1) for sines. With fewer points
+//! than n = m the work of a moment on the products would be wrong; with n = m the curvature has the products' values at the
+//! points. κ1 and κ2 likewise.
 
 use super::beam::{FlexibleBeam, SectionMode, StrainMeasure};
 use super::shapes::BendingFunctions;
@@ -40,19 +41,27 @@ impl<S: Scalar> FlexibleBeam<S> {
         self.strain == StrainMeasure::VonKarman && y > 0 && z > 0 && self.modes.torsion > 0
     }
 
-    /// The points and weights at which κ of an axis is taken, and its coordinates.
-    fn points(&self, axis: usize) -> (Vec<(f64, f64)>, std::ops::Range<usize>) {
+    /// The coordinates of κ of an axis.
+    fn own(&self, axis: usize) -> std::ops::Range<usize> {
         let [y, z, torsion, _] = self.modes.ranges();
-        let own = [torsion, z, y][axis].clone();
-        let n = own.len();
-        let points = match (axis, self.functions) {
+        [torsion, z, y][axis].clone()
+    }
+
+    /// `count` points and weights at which κ of an axis, or its products, are taken.
+    fn points(&self, axis: usize, count: usize) -> Vec<(f64, f64)> {
+        match (axis, self.functions) {
             (1 | 2, BendingFunctions::Sine) => {
-                let one = |k: usize| (k as f64 / (n + 1) as f64, 1.0 / (n + 1) as f64);
-                (1..=n).map(one).collect()
+                let part = 1.0 / (count + 1) as f64;
+                (1..=count).map(|k| (k as f64 * part, part)).collect()
             }
-            _ => gauss(n),
-        };
-        (points, own)
+            _ => gauss(count),
+        }
+    }
+
+    /// The number of points at which products are taken.
+    fn most(&self) -> usize {
+        let all = (0..3).map(|axis| self.own(axis).len());
+        all.fold(0, usize::max)
     }
 
     /// The strains κ1, κ2, κ3; none if K has them.
@@ -62,14 +71,19 @@ impl<S: Scalar> FlexibleBeam<S> {
             return all;
         }
         for axis in 0..3 {
-            for (xi, weight) in self.points(axis).0 {
+            let count = self.own(axis).len();
+            for (xi, weight) in self.points(axis, count) {
                 let modes = self.section_modes(S::from(xi));
+                let squares = match count == self.most() {
+                    true => self.products(axis, &modes, S::one()),
+                    false => self.products_at(axis, |i| modes[i].curvature[axis]),
+                };
                 all.push(Strain {
                     weight: self.values().stiffness[3 + axis] * self.length * weight,
                     axial: false,
                     strain: Quadratic {
                         linear: modes.iter().map(|mode| mode.curvature[axis]).collect(),
-                        squares: self.products(axis, &modes, S::one()),
+                        squares,
                     },
                 });
             }
@@ -93,13 +107,13 @@ impl<S: Scalar> FlexibleBeam<S> {
         PRODUCTS[axis].iter().flat_map(both).collect()
     }
 
-    /// The products in κ of an axis at ξ, or in its slope: combinations of functions that have these values
-    /// `of` each coordinate.
+    /// The products in κ of an axis at ξ, or in its slope: the nearest combination of functions that have these values `of`
+    /// each coordinate.
     pub(super) fn products_at(&self, axis: usize, of: impl Fn(usize) -> S) -> Squares<S> {
         if !self.couples() {
             return Vec::new();
         }
-        let (points, own) = self.points(axis);
+        let (points, own) = (self.points(axis, self.most()), self.own(axis));
         let at = |&(xi, weight): &(f64, f64)| (self.section_modes(S::from(xi)), weight);
         let all: Vec<_> = points.iter().map(at).collect();
         let value = |modes: &[SectionMode<S>], i: usize| modes[i].curvature[axis];

@@ -18,7 +18,6 @@ pub(crate) use lanczos::{Basis, Operator, largest};
 pub(crate) use search::{Pencil, PencilFailure};
 
 use super::assembly::Assembly;
-use super::mesh::UnknownSet;
 use super::shell::Terms;
 use super::state::NodalMotion;
 use super::statics::{StaticFailure, StaticProblem, mechanism, most_moved};
@@ -116,13 +115,16 @@ impl ModalProblem {
     /// Analyses a structure with supports.
     ///
     /// # Errors
-    /// [`UnknownSet`] if a support names no set of the mesh.
+    /// [`StaticFailure::UnknownSet`] if a support names no set of the mesh, [`StaticFailure::Held`] if no node is free.
     pub fn new(
         structure: &Structure<f64>,
         supports: &[Support],
         node_unknowns: NodeUnknowns,
-    ) -> Result<Self, UnknownSet> {
+    ) -> Result<Self, StaticFailure> {
         let assembly = Assembly::new(structure, supports, node_unknowns)?;
+        if assembly.unknowns.count == 0 {
+            return Err(StaticFailure::Held);
+        }
         Ok(Self {
             pencil: Pencil::new(assembly.pattern.clone()),
             assembly,

@@ -11,6 +11,10 @@ use crate::system::constraint::RowGradient;
 use crate::system::numbering::Numbering;
 use crate::system::redundant_rows::RedundantRows;
 
+/// A row moves its body by turning it more than so many times as by shifting it: the angular acceleration of a bob, which
+/// has hardly any inertia of its own, loses as many digits.
+const MOST_LEVER: f64 = 1e6;
+
 /// Elimination in blocks of up to order N.
 #[derive(Clone)]
 pub(crate) struct Elimination<S, const N: usize> {
@@ -86,6 +90,10 @@ impl<S: Scalar, const N: usize> Elimination<S, N> {
             let rows = numbering.rows(joint);
             let n = rows.len();
             let mobility = numbering.mobility(link.body);
+            let (linear, mass) = (
+                mobility.translation.free(),
+                model.bodies[link.body].mass.re(),
+            );
             let mut own = [[S::zero(); N]; N];
             for (i, g) in gradients[rows.clone()].iter().enumerate() {
                 own[i] = reduced(g, is_a, mobility);
@@ -94,6 +102,16 @@ impl<S: Scalar, const N: usize> Elimination<S, N> {
                 factors.lever[i] = lever;
                 for (k, other) in own[..=i].iter().enumerate() {
                     factors.schur[i][k] = dot(&lever, other);
+                }
+                let at_rest = own[i][..linear]
+                    .iter()
+                    .map(|x| x.re() * x.re())
+                    .sum::<f64>()
+                    / mass;
+                if at_rest > 0.0 && factors.schur[i][i].re() > MOST_LEVER * at_rest {
+                    return Err(SingularMatrix {
+                        column: numbering.velocities() + rows.start + i,
+                    });
                 }
                 if left_out.contains(rows.start + i) {
                     factors.schur[i][i] = S::one();
