@@ -3,6 +3,7 @@
 use crate::tests::reference::documents::problem as parsed;
 use flexbody::driver::start::notes;
 use serde_json::Value;
+use std::f64::consts::FRAC_PI_2;
 
 fn notes_of(document: &Value) -> Vec<String> {
     let problem = parsed(document);
@@ -51,7 +52,9 @@ fn impulses_of_drives_are_told() {
 
     // A drive that starts at rest, and one whose body has its velocity.
     let cosine = json!({"joint": "axle", "slide": {"polynomial": [0, 0, 2]}});
-    assert!(notes_of(&scene(&arm, slide, cosine)).is_empty());
+    assert!(notes_of(&scene(&arm, slide.clone(), cosine)).is_empty());
+    let at_its_end = json!({"joint": "axle", "slide": {"harmonic": {"amplitude": 0.2, "frequency": 3, "phase": FRAC_PI_2}}});
+    assert!(notes_of(&scene(&arm, slide.clone(), at_its_end)).is_empty());
     let mut moving = scene(&arm, hinge(), turn.clone());
     moving["bodies"]["arm"]["velocity"] = json!({"linear": [0, 2, 0], "angular": [0, 0, 4]});
     assert!(notes_of(&moving).is_empty(), "{:?}", notes_of(&moving));

@@ -279,8 +279,10 @@ fn bennett(digits: i32) -> Value {
 
 #[test]
 fn bennetts_linkage_moves_with_few_digits() {
-    for digits in [9, 8, 7] {
-        let problem = problem(&bennett(digits));
+    for digits in [9, 8, 7, 6] {
+        let mut file = bennett(digits);
+        file["simulation"]["duration"] = json!(if digits == 6 { 1.0 } else { 0.5 });
+        let problem = problem(&file);
         assert_eq!(
             problem
                 .redundant

@@ -107,6 +107,11 @@ fn a_force_in_the_plane_softens_the_beam_across() {
         for body in [
             by_functions("clamped", [5, 5, 4]),
             by_functions("chord", [5, 5, 4]),
+            by_functions("clamped", [2, 5, 4]),
+            by_functions("clamped", [3, 8, 4]),
+            by_functions("clamped", [4, 8, 8]),
+            by_functions("clamped", [8, 5, 4]),
+            by_functions("chord", [3, 7, 5]),
             by_elements(),
         ] {
             let moves = value(&moving(&body, part), "w");

@@ -54,6 +54,9 @@ pub(crate) struct Stretch {
     steps: Vec<(f64, f64)>,
 }
 
+/// Number of steps up to which a run resolves its tangent.
+const MOST_FOR_TANGENT: usize = 30_000;
+
 /// A step that is longer than the one before by this factor still grows. Growth extends a stretch by at most the other
 /// factor.
 const GROWS: f64 = 1.2;
@@ -195,6 +198,16 @@ fn march_until<S: SolveScalar>(
             break;
         }
         let begin = run.grid.reached();
+        if solver.resolves_tangent() && run.grid.steps() >= MOST_FOR_TANGENT {
+            return Err(IntegrationFailure::NoHeadway {
+                time: run.time_reached(),
+                duration: duration.re(),
+                step: run.grid.steps() + 1,
+                tries: run.grid.steps() + run.counts.rejected,
+                rejected: run.counts.rejected,
+                advance: run.time_reached(),
+            });
+        }
         let h = run.grid.size(duration, width, begin);
         let end = controller.end(begin, width);
         let k = run.grid.steps() + 1;

@@ -102,19 +102,20 @@ impl<'a, S: SolveScalar> TangentError<'a, S> {
         let end = &stages[stages.len() - 1];
         let nv = numbering.velocities();
         let speeds = scale.speeds(numbering, &from.v, &end.v);
-        let size = |y: &[f64], hv: &[f64]| scale.tangent_square(y, hv, h, speeds).sqrt();
+        // Velocities of vibrations count by the positions that they move.
+        let still = vec![0.0; nv];
+        let size = |y: &[f64]| scale.tangent_square(y, &still, h, speeds).sqrt();
         let of_state = |stage: &Stage<S>| {
             let part = |all: &[S]| -> Vec<f64> { all.iter().map(|x| x.infinitesimal()).collect() };
             let real: Vec<f64> = stage.q.iter().map(|x| x.re()).collect();
             let mut y = vec![0.0; nv];
             bodies::velocity_of_rates(numbering, &real, &part(&stage.q), &mut y);
-            let hv: Vec<f64> = stage.v.iter().map(|x| h * x.infinitesimal()).collect();
-            size(&y, &hv)
+            size(&y)
         };
         self.largest = self.largest.max(of_state(from));
         match self.largest.max(of_state(end)) {
             0.0 => 0.0,
-            all => size(&self.filtered[..nv], &self.filtered[nv..2 * nv]) / (OF_MOTION * all),
+            all => size(&self.filtered[..nv]) / (OF_MOTION * all),
         }
     }
 }
