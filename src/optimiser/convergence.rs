@@ -1,7 +1,8 @@
 //! When a run has converged: residuals of the optimality conditions, and the tests on them.
 //!
-//! [`judge`] tests a point on the way, [`is_solved_at_end`] one without further progress,
-//! [`is_at_precision`] one whose steps are lost in rounding. How a run ended is in `ending`.
+//! [`is_solved`] tests a point without further progress, [`is_solved_on_the_way`] one from which steps
+//! may still lead on, [`is_at_precision`] one whose steps are lost in rounding. How a run ended is in
+//! `ending`.
 
 use nalgebra::DVector;
 
@@ -152,40 +153,22 @@ const BALANCED: f64 = 0.1;
 /// A change of x by this number of rounding errors changes its last digits only.
 const LAST_DIGITS: f64 = 10.0;
 
-/// Judgement of the residuals at a point.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub(crate) enum Verdict {
-    /// They are too large.
-    Unsolved,
-    /// They are small only in scaled units and relative to the gradients of the run.
-    SolvedInScaledUnits,
-    /// They meet the tolerances in the units of the user as well.
-    Solved,
-}
-
-/// Judges a point. It is unsolved if multipliers balance a gradient that does not vanish, but the
-/// remaining force is not small relative to this gradient.
-pub(crate) fn judge(
+/// Whether a run may end at a point. It goes on where multipliers balance a gradient that does not
+/// vanish, but the remaining force is not small relative to this gradient.
+pub(crate) fn is_solved_on_the_way(
     program: &Program<'_>,
     point: &Point,
     slopes: &Derivatives,
     z: &ScaledMultipliers,
     scaled: f64,
-) -> Verdict {
+) -> bool {
     let force = &slopes.g + slopes.a.tr_mul(&z.y) - &z.zl + &z.zu;
     let (left, gradient) = (force.amax(), slopes.g.amax());
     let typical = program.typical_gradient() * program.scaling.objective;
     let balanced = left > program.options.tolerance * gradient
         && left <= BALANCED * gradient
         && gradient > VANISHING * typical;
-    let kkt = kkt(program, point, slopes, z, scaled);
-    if balanced || !is_solved_in_scaled_units(program, point, &kkt) {
-        Verdict::Unsolved
-    } else if is_solved_in_user_units(program, point, slopes, &kkt) {
-        Verdict::Solved
-    } else {
-        Verdict::SolvedInScaledUnits
-    }
+    !balanced && is_solved(program, point, slopes, z, scaled)
 }
 
 /// Whether the residuals meet the tolerances in scaled units and relative to the gradients of the
@@ -237,8 +220,8 @@ pub(crate) fn is_at_precision(
     })
 }
 
-/// Whether [`judge`] gives [`Verdict::Solved`], at a point where no step makes progress.
-pub(crate) fn is_solved_at_end(
+/// Whether the residuals meet all tolerances.
+pub(crate) fn is_solved(
     program: &Program<'_>,
     point: &Point,
     slopes: &Derivatives,

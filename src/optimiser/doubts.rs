@@ -3,9 +3,9 @@
 
 use nalgebra::DVector;
 
-use crate::optimiser::ending::{Claim, FinalIterate};
+use crate::optimiser::ending::FinalIterate;
+use crate::optimiser::ending::Status;
 use crate::optimiser::multipliers::{ScaledMultipliers, user_multipliers};
-use crate::optimiser::outcome::Status;
 use crate::optimiser::program::{Derivatives, Point, Program};
 
 /// Distance from the first point, relative to its size, beyond which a solution is doubted, and how
@@ -22,8 +22,7 @@ fn unless_it_falls(program: &mut Program<'_>, mut finish: FinalIterate) -> Final
     let mut way = &finish.point.x - &first;
     let length = way.amax();
     let doubtful = length > DOUBTFUL * first.amax().max(1.0);
-    let solved = finish.status == Status::Converged || finish.is_solved(program);
-    if !doubtful || !solved {
+    if !doubtful || finish.status != Status::Converged {
         return finish;
     }
     // Only the variables that went far go on.
@@ -104,12 +103,11 @@ pub(crate) fn degenerate_row(
 
 /// No solution has a degenerate row.
 fn unless_multipliers_fail(program: &mut Program<'_>, mut finish: FinalIterate) -> FinalIterate {
-    if !(finish.status == Status::Converged || finish.is_solved(program)) {
+    if finish.status != Status::Converged {
         return finish;
     }
     let (point, slopes) = (&finish.point, &finish.slopes);
     if let Some(j) = degenerate_row(program, point, slopes, &finish.multipliers) {
-        finish.claim = Claim::Refuted;
         finish.status = Status::Degenerate {
             constraint: program.constraint_name(j),
         };
@@ -134,7 +132,7 @@ fn unless_gradients_are_wrong(program: &mut Program<'_>, mut finish: FinalIterat
         finish.status,
         Status::Stalled | Status::AtPrecision | Status::Infeasible { .. }
     );
-    if !undecided || finish.claim == Claim::Refuted || finish.is_solved(program) {
+    if !undecided {
         return finish;
     }
     if let Some(what) = wrong_gradients(program, &finish.point, &finish.slopes) {

@@ -1,47 +1,92 @@
-//! How a run ended: the ending of an iteration, the final iterate of a method, and its status.
+//! How a run ended: the verdict, the final iterate of a method, and the best point of a run.
 //! Whether the conditions hold is tested in `convergence`.
 
 use nalgebra::DVector;
+use serde::{Deserialize, Serialize};
 
 use crate::optimiser::convergence::{
-    is_at_precision, is_solved_at_end, is_solved_in_user_units, kkt, scaled_residual,
+    is_at_precision, is_solved, is_solved_in_user_units, kkt, scaled_residual,
 };
 use crate::optimiser::linear::quasi_newton::QuasiNewton;
 use crate::optimiser::multipliers::ScaledMultipliers;
 use crate::optimiser::options::Method;
-use crate::optimiser::outcome::{Kkt, Status};
+use crate::optimiser::outcome::Kkt;
 use crate::optimiser::program::{Derivatives, EarlyExit, Point, Program};
 use crate::optimiser::scaling::Units;
 
-/// How the iteration ended.
-#[derive(Clone, Debug, PartialEq)]
-pub(crate) enum Ending {
-    /// The caller's test was met, or the optimality conditions.
-    Reached,
-    /// The point is a stationary point of the violation.
-    Infeasible,
-    /// The objective falls below all bounds.
+/// How a run ended.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+#[serde(rename_all = "snake_case")]
+pub enum Status {
+    /// The point satisfies the first-order conditions to the tolerances in the units of the user
+    /// ([`Options::tolerance`](super::Options::tolerance)).
+    Converged,
+    /// The tolerances cannot be reached in the units of the user. The residuals are small relative
+    /// to the gradients of the run, the gain predicted by the quasi-Newton model is below the
+    /// rounding of the objective, and a restart at the point gained nothing.
+    AtPrecision,
+    /// The point is infeasible and a stationary point of the constraint violation, or bounds of a
+    /// constraint or variable cross.
+    Infeasible {
+        /// Name of the most violated constraint, or of the one whose bounds cross.
+        constraint: String,
+        /// Its violation, in its own units, at the point where the largest violation is least to
+        /// first order. Half the distance of bounds that cross.
+        violation: f64,
+    },
+    /// The program or the options make no sense. Nothing was evaluated, or a list of values or
+    /// derivatives has a wrong length.
+    IllPosed {
+        /// What is wrong, by name.
+        what: String,
+    },
+    /// The objective falls below every bound along feasible points.
     Unbounded,
-    /// No step is accepted although the radius is tiny.
+    /// A function is undefined at the start and at perturbed starts.
+    UndefinedStart {
+        /// Which function, and why.
+        what: String,
+    },
+    /// Values and gradients disagree where the run could not go on.
+    Inconsistent {
+        /// Which function, and its slopes by values and by gradients.
+        what: String,
+    },
+    /// The derivatives of a row vanish where it holds, as those of x² = 0 do: the point may be
+    /// optimal, but no multipliers exist.
+    Degenerate {
+        /// Name of the row.
+        constraint: String,
+    },
+    /// An evaluation panicked.
+    Panicked {
+        /// Its message.
+        what: String,
+    },
+    /// No step makes progress although the conditions are violated. The best point is returned.
     Stalled,
-    /// The conditions hold in scaled units, but these do not suit the point.
-    Misscaled,
+    /// The limit of iterations was reached.
+    IterationLimit,
+    /// The limit of evaluations was reached.
+    EvaluationLimit,
+    /// The limit of wall time was reached.
+    TimeLimit,
+    /// The observer asked to stop.
+    Interrupted,
+}
+
+impl From<EarlyExit> for Status {
+    fn from(exit: EarlyExit) -> Status {
+        match exit {
+            EarlyExit::Failed(_) => Status::Stalled,
+            EarlyExit::Halt(status) => status,
+        }
+    }
 }
 
 /// Step, relative to max(1, ‖x‖∞), of the test for descent. An objective that can fall must fall
 /// within it.
 const NEARBY: f64 = 1e-6;
-
-/// What evaluations near a final iterate say of a claim that it solves the program.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub(crate) enum Claim {
-    /// Nothing: the residuals decide.
-    Untested,
-    /// The conditions hold in the units of the user and no descent was found nearby.
-    Confirmed,
-    /// The residuals mean nothing here.
-    Refuted,
-}
 
 /// The final iterate of a method.
 pub(crate) struct FinalIterate {
@@ -51,7 +96,6 @@ pub(crate) struct FinalIterate {
     pub slopes: Derivatives,
     pub multipliers: ScaledMultipliers,
     pub scaled: f64,
-    pub claim: Claim,
     /// The units of these numbers.
     pub units: Units,
     pub b: QuasiNewton,
@@ -60,6 +104,21 @@ pub(crate) struct FinalIterate {
 }
 
 impl FinalIterate {
+    /// The same with the status that its residuals justify: a method that can make no progress has
+    /// converged if the conditions hold.
+    pub(crate) fn judged(mut self, program: &Program<'_>) -> FinalIterate {
+        let (point, slopes, z) = (&self.point, &self.slopes, &self.multipliers);
+        let solved = is_solved(program, point, slopes, z, self.scaled);
+        match self.status {
+            Status::Stalled | Status::IterationLimit | Status::EvaluationLimit if solved => {
+                self.status = Status::Converged;
+            }
+            Status::Converged if !solved => self.status = Status::Stalled,
+            _ => {}
+        }
+        self
+    }
+
     /// Sets the program to the units of this iterate.
     pub(crate) fn restore_units(&self, program: &mut Program<'_>) {
         program.set_units(&self.units);
@@ -109,7 +168,7 @@ impl FinalIterate {
     /// hold in the units of the user, [`Status::AtPrecision`] if rounding caused the stall. In
     /// neither case may the Lagrangian fall nearby.
     pub(crate) fn with_stall_named(mut self, program: &mut Program<'_>) -> FinalIterate {
-        if self.status != Status::Stalled || self.is_solved(program) {
+        if self.status != Status::Stalled {
             return self;
         }
         let (point, slopes, z) = (&self.point, &self.slopes, &self.multipliers);
@@ -122,11 +181,11 @@ impl FinalIterate {
         let precise = is_at_precision(program, point, slopes, z, &mut self.b);
         let holds = absolute && (kkt.relative_complementarity <= tolerance || precise && vanish);
         if (holds || precise) && !self.falls_nearby(program) {
-            if holds {
-                self.claim = Claim::Confirmed;
+            self.status = if holds {
+                Status::Converged
             } else {
-                self.status = Status::AtPrecision;
-            }
+                Status::AtPrecision
+            };
         }
         self
     }
@@ -151,23 +210,12 @@ impl FinalIterate {
         ];
         terms.iter().sum::<f64>() < -10.0 * f64::EPSILON * self.point.f.abs()
     }
-
-    /// Whether the conditions hold, whatever the status of the method.
-    pub(crate) fn is_solved(&self, program: &Program<'_>) -> bool {
-        let (point, slopes, z) = (&self.point, &self.slopes, &self.multipliers);
-        match self.claim {
-            Claim::Confirmed => true,
-            Claim::Refuted => false,
-            Claim::Untested => is_solved_at_end(program, point, slopes, z, self.scaled),
-        }
-    }
 }
 
 /// Replaces the final iterate of a run that did not converge by a better point of the run. If that
 /// is better by more than the tolerance, the run had not reached the precision of the objective.
 pub(crate) fn best_of(program: &mut Program<'_>, finish: FinalIterate) -> FinalIterate {
-    let settled = matches!(finish.status, Status::Converged | Status::Infeasible { .. })
-        || finish.status == Status::Stalled && finish.is_solved(program);
+    let settled = matches!(finish.status, Status::Converged | Status::Infeasible { .. });
     let at_precision = finish.status == Status::AtPrecision;
     let f = finish.point.f.abs();
     let unit = f.max(program.unit_of_objective() * program.scaling.objective);
@@ -219,6 +267,7 @@ pub(crate) fn best_of(program: &mut Program<'_>, finish: FinalIterate) -> FinalI
         scaled,
         ..finish
     }
+    .judged(program)
 }
 
 /// The outcome if all variables are fixed.
@@ -247,7 +296,6 @@ pub(crate) fn unfinished(program: &Program<'_>, point: Point, slopes: Derivative
         method: program.first_method(),
         b: QuasiNewton::new(point.x.len(), options.dense_limit, options.memory),
         scaled: scaled_residual(program, &point, &slopes, &multipliers),
-        claim: Claim::Untested,
         units: program.units(),
         multipliers,
         point,
@@ -258,24 +306,10 @@ pub(crate) fn unfinished(program: &Program<'_>, point: Point, slopes: Derivative
 }
 
 /// The verdict on a point at which the worst row cannot be improved.
-fn infeasible(program: &Program<'_>, at: &Point) -> Status {
+pub(crate) fn infeasible(program: &Program<'_>, at: &Point) -> Status {
     let (violation, j) = program.worst_violation(&at.c);
     Status::Infeasible {
         constraint: program.constraint_name(j),
         violation,
-    }
-}
-
-pub(crate) fn status_of(
-    program: &Program<'_>,
-    result: Result<Ending, EarlyExit>,
-    at: &Point,
-) -> Status {
-    match result {
-        Ok(Ending::Reached) => Status::Converged,
-        Ok(Ending::Unbounded) => Status::Unbounded,
-        Ok(Ending::Infeasible) => infeasible(program, at),
-        Ok(Ending::Stalled | Ending::Misscaled) | Err(EarlyExit::Failed(_)) => Status::Stalled,
-        Err(EarlyExit::Halt(status)) => status,
     }
 }

@@ -6,12 +6,13 @@ use std::time::Instant;
 
 use nalgebra::DVector;
 
+use crate::optimiser::ending::Status;
 use crate::optimiser::linear::jacobian::Jacobian;
 use crate::optimiser::nlp::{
     Evaluation, EvaluationFailure, Gradients, fault_of_evaluation, fault_of_gradients,
     length_of_evaluation, length_of_gradients,
 };
-use crate::optimiser::outcome::{FailedDesign, Status};
+use crate::optimiser::outcome::FailedDesign;
 use crate::optimiser::program::{Derivatives, EarlyExit, Point, Program};
 
 /// Largest number of recorded designs with a failed evaluation.

@@ -30,6 +30,7 @@ mod trust_region;
 mod well_posed;
 
 pub use derivatives::{DerivativeError, derivative_errors};
+pub use ending::Status;
 pub use functions::Functions;
 pub use linear::curvature::Curvature;
 pub use linear::jacobian::Jacobian;
@@ -37,7 +38,7 @@ pub use linear::quasi_newton::QuasiNewton;
 pub use nlp::{Evaluation, EvaluationFailure, Gradients, Nlp};
 pub use observer::{Observer, Phase, Printed, Row, Silent};
 pub use options::{Barrier, Method, Options};
-pub use outcome::{ActiveBound, BoundSide, Counts, FailedDesign, Kkt, Outcome, Status};
+pub use outcome::{ActiveBound, BoundSide, Counts, FailedDesign, Kkt, Outcome};
 pub use solve::{resume, solve};
 pub use state::{Multipliers, SavedState, Scaling};
 

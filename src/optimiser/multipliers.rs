@@ -44,14 +44,6 @@ impl ScaledMultipliers {
         ScaledMultipliers { y, zl, zu }
     }
 
-    /// Multipliers of the program whose objective is multiplied by `factor`.
-    pub(crate) fn times(mut self, factor: f64) -> Self {
-        self.y *= factor;
-        self.zl *= factor;
-        self.zu *= factor;
-        self
-    }
-
     /// Sets multipliers to zero that are smaller than the distance to their bound: what the barrier leaves of the
     /// force of a bound that is not active. Where the objective and its gradients vanish, their products are not
     /// small beside it.

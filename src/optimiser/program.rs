@@ -5,11 +5,12 @@ use std::time::Instant;
 
 use nalgebra::DVector;
 
+use crate::optimiser::ending::Status;
 use crate::optimiser::linear::jacobian::Jacobian;
 use crate::optimiser::nlp::{EvaluationFailure, Nlp};
 use crate::optimiser::observer::{Observer, Phase, Row};
 use crate::optimiser::options::{Method, Options};
-use crate::optimiser::outcome::{Counts, FailedDesign, Status};
+use crate::optimiser::outcome::{Counts, FailedDesign};
 use crate::optimiser::state::Scaling;
 
 /// Distance from the first point, relative to its size. Beyond it a fall in scaled units shows an

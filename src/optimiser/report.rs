@@ -1,11 +1,11 @@
 //! The outcome of a run, made of its final iterate.
 
 use crate::optimiser::convergence::unit_of_forces;
-use crate::optimiser::ending::FinalIterate;
+use crate::optimiser::ending::{FinalIterate, Status};
 use crate::optimiser::multipliers::user_multipliers;
 use crate::optimiser::nlp::Nlp;
 use crate::optimiser::options::Method;
-use crate::optimiser::outcome::{ActiveBound, BoundSide, Counts, Kkt, Outcome, Status};
+use crate::optimiser::outcome::{ActiveBound, BoundSide, Counts, Kkt, Outcome};
 use crate::optimiser::program::{Derivatives, Program};
 use crate::optimiser::state::{SavedState, Scaling};
 
@@ -27,23 +27,14 @@ pub(crate) fn state_of(program: &Program<'_>, finish: &FinalIterate) -> SavedSta
 
 pub(crate) fn outcome(program: &Program<'_>, finish: FinalIterate, state: SavedState) -> Outcome {
     let kkt = finish.kkt(program);
-    let solved = finish.is_solved(program);
     let FinalIterate {
-        mut status,
+        status,
         method,
         point,
         slopes,
         multipliers,
         ..
     } = finish;
-    // A method that can make no progress has converged if the conditions hold.
-    match status {
-        Status::Stalled | Status::IterationLimit | Status::EvaluationLimit if solved => {
-            status = Status::Converged;
-        }
-        Status::Converged if !solved => status = Status::Stalled,
-        _ => {}
-    }
     let x = program.to_user(&point.x);
     let mut constraints = vec![0.0; program.scaling.constraints.len()];
     for (k, &j) in program.rows.iter().enumerate() {

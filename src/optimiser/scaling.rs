@@ -5,9 +5,9 @@ use std::time::Instant;
 
 use nalgebra::DVector;
 
+use crate::optimiser::ending::Status;
 use crate::optimiser::evaluations::unless_panicked;
 use crate::optimiser::linear::curvature::Curvature;
-use crate::optimiser::outcome::Status;
 use crate::optimiser::program::{Derivatives, EarlyExit, Point, Program};
 use crate::optimiser::state::Scaling;
 
@@ -17,9 +17,6 @@ const LARGEST_LIFT: f64 = 1e12;
 /// A row whose violation exceeds its gradient by this factor is flat: steps of so many sizes of the
 /// start would lead nowhere.
 const FLAT_ROW: f64 = 1e4;
-
-/// Least factor by which a scale is changed during a run.
-const WORTHWHILE: f64 = 10.0;
 
 /// A restart keeps the units of the variables if the size of the point is between these, or so
 /// small that the point is zero.
@@ -99,28 +96,6 @@ impl Program<'_> {
         }
     }
 
-    /// Factor by which the scale of the objective should change at a point of the run with gradient
-    /// `g` and curvature `curvature`, both scaled. `None` if the scale suits.
-    pub(crate) fn better_scale(
-        &self,
-        point: &Point,
-        g: &DVector<f64>,
-        curvature: f64,
-    ) -> Option<f64> {
-        let size = point.x.amax().max(1.0);
-        let limit = self.options.scaling_gradient / g.amax().max(curvature * size);
-        let factor = limit.min(1.0 / self.scaling.objective);
-        (factor.is_finite() && factor >= WORTHWHILE).then_some(factor)
-    }
-
-    /// Multiplies the scale of the objective by `factor`.
-    pub(crate) fn rescale(&mut self, factor: f64) {
-        self.scaling.objective *= factor;
-        if let Some(best) = &mut self.best {
-            best.f *= factor;
-        }
-    }
-
     /// The units in use.
     pub(crate) fn units(&self) -> Units {
         Units {
@@ -142,7 +117,10 @@ impl Program<'_> {
 
     /// Changes to `units`, with bounds and the best point. The caller converts the current point.
     pub(crate) fn set_units(&mut self, units: &Units) {
-        self.rescale(units.objective / self.scaling.objective);
+        if let Some(best) = &mut self.best {
+            best.f *= units.objective / self.scaling.objective;
+        }
+        self.scaling.objective = units.objective;
         for (k, &j) in self.rows.iter().enumerate() {
             let factor = units.constraints[j] / self.scaling.constraints[j];
             self.row_lower[k] *= factor;

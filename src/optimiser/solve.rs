@@ -4,14 +4,14 @@ use nalgebra::DVector;
 
 use crate::optimiser::convergence::scaled_residual;
 use crate::optimiser::doubts::{doubted, wrong_gradients};
-use crate::optimiser::ending::{Claim, FinalIterate, best_of, unfinished, without_freedom};
+use crate::optimiser::ending::{FinalIterate, Status, best_of, unfinished, without_freedom};
 use crate::optimiser::interior_point::run::{RESUMED_PUSH, interior_point};
 use crate::optimiser::least_violation::least_violation;
 use crate::optimiser::multipliers::ScaledMultipliers;
 use crate::optimiser::nlp::Nlp;
 use crate::optimiser::observer::{Observer, Phase};
 use crate::optimiser::options::{Method, Options};
-use crate::optimiser::outcome::{Outcome, Status};
+use crate::optimiser::outcome::Outcome;
 use crate::optimiser::program::{Derivatives, EarlyExit, Point, Program, Progress};
 use crate::optimiser::report::{outcome, state_of, untried, without_values};
 use crate::optimiser::start::{Neighbourhood, first_point, left_start, look_around};
@@ -171,7 +171,7 @@ fn attempt(
         Method::InteriorPoint | Method::Auto => interior_point(program, point, slopes, saved, push),
     };
     let mut finish = run(program, first, saved);
-    if saved.is_none() && program.counts.iterations == 0 && finish.is_solved(program) {
+    if saved.is_none() && program.counts.iterations == 0 && finish.status == Status::Converged {
         finish = match left_start(program, &finish.point) {
             Some(next) => run(program, next, None),
             None => finish,
@@ -180,7 +180,6 @@ fn attempt(
             && let Some(what) = wrong_gradients(program, &finish.point, &finish.slopes)
         {
             finish.status = Status::Inconsistent { what };
-            finish.claim = Claim::Refuted;
         }
     }
     for _ in 0..ESCAPES {
@@ -193,10 +192,7 @@ fn attempt(
                 Ok(first) => run(program, first, None),
                 Err(trouble) => {
                     finish.restore_units(program);
-                    finish.status = match trouble {
-                        EarlyExit::Halt(status) => status,
-                        EarlyExit::Failed(_) => Status::Stalled,
-                    };
+                    finish.status = trouble.into();
                     finish
                 }
             };
@@ -255,7 +251,7 @@ fn auto(
                 | Status::Infeasible { .. }
         );
         let large = program.free.len() > well_posed::LARGEST_TRUST_REGION;
-        if !hopeless || large || kept.is_solved(program) {
+        if !hopeless || large {
             break;
         }
         // At the best point the rows cannot be improved.
@@ -276,7 +272,7 @@ fn auto(
         let undecided = matches!(
             next.status,
             Status::Stalled | Status::IterationLimit | Status::EvaluationLimit
-        ) && !next.is_solved(program);
+        );
         let keep = match kept.status {
             Status::Infeasible { .. } => undecided,
             Status::AtPrecision => undecided || next.is_worse_than(&kept, program),

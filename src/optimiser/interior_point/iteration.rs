@@ -2,9 +2,9 @@
 
 use nalgebra::DVector;
 
-use crate::optimiser::convergence::{Verdict, is_at_precision, judge};
+use crate::optimiser::convergence::{is_at_precision, is_solved_on_the_way};
 use crate::optimiser::doubts::wrong_gradients;
-use crate::optimiser::ending::Ending;
+use crate::optimiser::ending::Status;
 use crate::optimiser::interior_point::barrier::BarrierRule;
 use crate::optimiser::interior_point::direction::{Direction, NewtonSystem};
 use crate::optimiser::interior_point::filter::Filter;
@@ -13,7 +13,7 @@ use crate::optimiser::interior_point::line_search::{Accepted, LineSearch, infeas
 use crate::optimiser::linear::quasi_newton::QuasiNewton;
 use crate::optimiser::multipliers::ScaledMultipliers;
 use crate::optimiser::observer::Phase;
-use crate::optimiser::outcome::{Counts, Status};
+use crate::optimiser::outcome::Counts;
 use crate::optimiser::program::{Derivatives, EarlyExit, Point, Program, Progress};
 
 /// Infeasibility below which multipliers of rows are recomputed by least squares.
@@ -174,17 +174,17 @@ impl InteriorPoint {
     }
 
     /// Iterates until the run ends.
-    pub(crate) fn run(&mut self, program: &mut Program<'_>) -> Result<Ending, EarlyExit> {
+    pub(crate) fn run(&mut self, program: &mut Program<'_>) -> Status {
+        self.iterate(program).unwrap_or_else(Status::from)
+    }
+
+    fn iterate(&mut self, program: &mut Program<'_>) -> Result<Status, EarlyExit> {
         let mut failures = 0;
         let mut lost = 0;
         loop {
             self.activate_bounds(program);
-            match self.verdict(program) {
-                Verdict::Solved => return Ok(Ending::Reached),
-                Verdict::SolvedInScaledUnits if self.better_scale(program).is_some() => {
-                    return Ok(Ending::Misscaled);
-                }
-                Verdict::SolvedInScaledUnits | Verdict::Unsolved => {}
+            if self.is_solved(program) {
+                return Ok(Status::Converged);
             }
             lost = if self.is_at_precision(program) {
                 lost + 1
@@ -192,10 +192,10 @@ impl InteriorPoint {
                 0
             };
             if lost > LOST_STEPS || self.stays(program) {
-                return Ok(Ending::Stalled);
+                return Ok(Status::Stalled);
             }
             if program.is_unbounded(&self.at.point) {
-                return Ok(Ending::Unbounded);
+                return Ok(Status::Unbounded);
             }
             let curvature = program.curvature(&self.at.point.x, &self.at.y)?;
             self.b.set_exact(curvature);
@@ -205,7 +205,7 @@ impl InteriorPoint {
             program.next_iteration()?;
             let tau = (1.0 - self.barrier.mu).max(0.99);
             let Some((system, direction)) = self.direction(tau) else {
-                return Ok(Ending::Stalled);
+                return Ok(Status::Stalled);
             };
             let dual = direction.dual_limit(&self.at, tau);
             let search = LineSearch {
@@ -385,28 +385,20 @@ impl InteriorPoint {
         }
     }
 
-    /// Factor by which the objective should be scaled further, if any.
-    pub(crate) fn better_scale(&self, program: &Program<'_>) -> Option<f64> {
-        let curvature = self.b.newest_curvature().unwrap_or(0.0);
-        program.better_scale(&self.at.point, &self.at.slopes.g, curvature)
-    }
-
     fn is_at_precision(&mut self, program: &Program<'_>) -> bool {
         let z = self.multipliers(program);
         let (point, slopes) = (&self.at.point, &self.at.slopes);
         is_at_precision(program, point, slopes, &z, &mut self.b)
     }
 
-    fn verdict(&self, program: &Program<'_>) -> Verdict {
+    fn is_solved(&self, program: &Program<'_>) -> bool {
         let scaled = self.optimality();
-        if scaled > program.options.tolerance {
-            return Verdict::Unsolved;
-        }
-        if !self.is_gap_least() && self.gap() > self.allowed_gap(program) {
-            return Verdict::Unsolved;
+        let is_wide = !self.is_gap_least() && self.gap() > self.allowed_gap(program);
+        if scaled > program.options.tolerance || is_wide {
+            return false;
         }
         let z = self.multipliers(program);
         let (point, slopes) = (&self.at.point, &self.at.slopes);
-        judge(program, point, slopes, &z, scaled)
+        is_solved_on_the_way(program, point, slopes, &z, scaled)
     }
 }

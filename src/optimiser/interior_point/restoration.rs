@@ -2,7 +2,7 @@
 
 use nalgebra::DVector;
 
-use crate::optimiser::ending::Ending;
+use crate::optimiser::ending::Status;
 use crate::optimiser::interior_point::iterate::Layout;
 use crate::optimiser::interior_point::iteration::InteriorPoint;
 use crate::optimiser::interior_point::line_search::infeasibility;
@@ -16,7 +16,7 @@ impl InteriorPoint {
         &mut self,
         program: &mut Program<'_>,
         failures: usize,
-    ) -> Result<Option<Ending>, EarlyExit> {
+    ) -> Result<Option<Status>, EarlyExit> {
         let theta = self.theta();
         let small = 1e-2 * program.options.tolerance.min(program.least_allowed());
         if theta <= small || failures > 3 {
@@ -26,7 +26,7 @@ impl InteriorPoint {
                 return Ok(None);
             }
             if theta <= small || failures > 6 {
-                return Ok(Some(Ending::Stalled));
+                return Ok(Some(Status::Stalled));
             }
         }
         self.restore(program, theta, 0.9)
@@ -38,7 +38,7 @@ impl InteriorPoint {
         program: &mut Program<'_>,
         theta: f64,
         gain: f64,
-    ) -> Result<Option<Ending>, EarlyExit> {
+    ) -> Result<Option<Status>, EarlyExit> {
         let phi = self.layout.barrier_function(
             self.at.point.f,
             &self.at.point.x,
@@ -55,7 +55,7 @@ impl InteriorPoint {
             let phi = layout.barrier_function(p.f, &p.x, &s, mu);
             theta_new <= gain * theta && filter.accepts(theta_new, phi)
         };
-        let ending = search.run(program, accepted)?;
+        let ending = search.iterate(program, accepted)?;
         let before = self.theta();
         self.at.s = slacks(&self.layout, &search.point);
         self.at.point = search.point;
@@ -65,13 +65,13 @@ impl InteriorPoint {
             .keep_multipliers_in_band(&self.layout, self.barrier.mu);
         self.at.estimate_multipliers(&self.layout);
         match ending {
-            Ending::Reached => Ok(None),
-            Ending::Infeasible => Ok(Some(Ending::Infeasible)),
+            Status::Converged => Ok(None),
+            Status::Infeasible { .. } => Ok(Some(ending)),
             _ if after < 0.5 * before => {
                 self.filter.clear(self.theta());
                 Ok(None)
             }
-            other => Ok(Some(other)),
+            _ => Ok(Some(ending)),
         }
     }
 }

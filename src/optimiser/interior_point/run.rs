@@ -2,12 +2,11 @@
 
 use nalgebra::DVector;
 
-use crate::optimiser::convergence::{is_solved_at_end, scaled_residual};
-use crate::optimiser::ending::{Claim, Ending, FinalIterate, status_of};
+use crate::optimiser::convergence::{is_solved, scaled_residual};
+use crate::optimiser::ending::{FinalIterate, Status};
 use crate::optimiser::interior_point::iteration::InteriorPoint;
 use crate::optimiser::multipliers::{ScaledMultipliers, scaled_multipliers};
 use crate::optimiser::options::Method;
-use crate::optimiser::outcome::Status;
 use crate::optimiser::program::{Derivatives, Point, Program};
 use crate::optimiser::renewal::renewed;
 use crate::optimiser::state::SavedState;
@@ -38,28 +37,7 @@ pub(crate) fn interior_point(
 }
 
 fn finish_interior_point(program: &mut Program<'_>, mut method: InteriorPoint) -> FinalIterate {
-    let mut result = method.run(program);
-    while let Ok(Ending::Misscaled | Ending::Stalled) = result
-        && let Some(factor) = method.better_scale(program)
-    {
-        let z = method.multipliers(program).times(factor);
-        let (b, mu) = (method.b.times(factor), method.barrier.mu * factor);
-        let mut point = method.at.point.clone();
-        program.rescale(factor);
-        point.f *= factor;
-        // Small derivatives were lost in the rounding of the large ones at the start.
-        let slopes = match program.gradients(&point.x) {
-            Ok(slopes) => slopes,
-            Err(trouble) => {
-                result = Err(trouble);
-                break;
-            }
-        };
-        method = InteriorPoint::new(program, point, slopes, RESUMED_PUSH);
-        method.warm_start(&z, b, mu.min(program.options.initial_barrier));
-        result = method.run(program);
-    }
-    let status = status_of(program, result, &method.at.point);
+    let status = method.run(program);
     let mut multipliers = method.multipliers(program);
     let mut scaled = method.optimality();
     let (point, slopes) = (method.at.point, method.at.slopes);
@@ -82,7 +60,7 @@ fn finish_interior_point(program: &mut Program<'_>, mut method: InteriorPoint) -
         released.release(program, &point);
         for choice in [fitted, released] {
             let residual = scaled_residual(program, &point, &slopes, &choice);
-            let solved = is_solved_at_end(program, &point, &slopes, &choice, residual);
+            let solved = is_solved(program, &point, &slopes, &choice, residual);
             if useless || solved {
                 (multipliers, scaled) = (choice, residual);
                 break;
@@ -94,7 +72,6 @@ fn finish_interior_point(program: &mut Program<'_>, mut method: InteriorPoint) -
         method: Method::InteriorPoint,
         multipliers,
         scaled,
-        claim: Claim::Untested,
         units: program.units(),
         point,
         slopes,
@@ -102,4 +79,5 @@ fn finish_interior_point(program: &mut Program<'_>, mut method: InteriorPoint) -
         barrier: method.barrier.mu,
         radius: program.options.initial_radius,
     }
+    .judged(program)
 }

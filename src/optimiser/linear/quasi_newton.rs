@@ -152,24 +152,6 @@ impl QuasiNewton {
         }
     }
 
-    /// `factor` B.
-    pub(crate) fn times(&self, factor: f64) -> QuasiNewton {
-        let mut b = self.stored();
-        b.sigma *= factor;
-        let diagonals = b.base.iter_mut().chain(&mut b.model);
-        diagonals.for_each(|d| *d *= factor);
-        for pair in &mut b.pairs {
-            pair.y *= factor;
-        }
-        b
-    }
-
-    /// Curvature sᵀy/sᵀs of the newest pair, if there is one.
-    pub(crate) fn newest_curvature(&self) -> Option<f64> {
-        let pair = self.pairs.last()?;
-        Some(pair.s.dot(&pair.y) / pair.s.norm_squared())
-    }
-
     /// Sets the scale σ that B has without pairs.
     pub(crate) fn set_scale(&mut self, sigma: f64) {
         self.sigma = sigma;

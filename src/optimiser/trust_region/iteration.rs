@@ -6,8 +6,8 @@
 
 use nalgebra::DVector;
 
-use crate::optimiser::convergence::{Verdict, judge, scaled_residual};
-use crate::optimiser::ending::Ending;
+use crate::optimiser::convergence::{is_solved_on_the_way, scaled_residual};
+use crate::optimiser::ending::{Status, infeasible};
 use crate::optimiser::linear::quasi_newton::QuasiNewton;
 use crate::optimiser::multipliers::ScaledMultipliers;
 use crate::optimiser::observer::Phase;
@@ -59,15 +59,6 @@ impl TrustRegion {
         }
     }
 
-    /// Continues with the objective multiplied by `factor` and with its slopes.
-    pub(crate) fn rescale(&mut self, factor: f64, slopes: Derivatives) {
-        self.point.f *= factor;
-        self.slopes = slopes;
-        self.b = self.b.times(factor);
-        self.y *= factor;
-        self.penalty *= factor;
-    }
-
     pub(crate) fn weight(&self) -> f64 {
         if self.goal == Goal::Optimum { 1.0 } else { 0.0 }
     }
@@ -77,12 +68,12 @@ impl TrustRegion {
         ScaledMultipliers::polished(program, &self.point, &self.slopes, &self.y)
     }
 
-    /// Iterates until `reached` holds or the method ends.
-    pub(crate) fn run(
+    /// Iterates until the conditions, or `reached`, hold or no step helps.
+    pub(crate) fn iterate(
         &mut self,
         program: &mut Program<'_>,
         mut reached: impl FnMut(&Program<'_>, &Point) -> bool,
-    ) -> Result<Ending, EarlyExit> {
+    ) -> Result<Status, EarlyExit> {
         let tiny = 1e-13;
         let mut rejected = 0;
         let mut lost = 0;
@@ -90,7 +81,7 @@ impl TrustRegion {
         let mut renewals = 0;
         loop {
             if self.goal == Goal::Optimum && program.is_unbounded(&self.point) {
-                return Ok(Ending::Unbounded);
+                return Ok(Status::Unbounded);
             }
             let Some(model) = self.solve_model(program) else {
                 if self.b.is_empty() && self.radius < 1e-6 {
@@ -101,11 +92,13 @@ impl TrustRegion {
                 continue;
             };
             self.y.copy_from(&model.step.y);
-            if model.irreducible && self.end(program, IRREDUCIBLE) == Ending::Infeasible {
-                return Ok(Ending::Infeasible);
-            }
-            if let Some(ending) = self.settled(program) {
+            if model.irreducible
+                && let ending @ Status::Infeasible { .. } = self.end(program, IRREDUCIBLE)
+            {
                 return Ok(ending);
+            }
+            if self.is_solved(program) {
+                return Ok(Status::Converged);
             }
             let size = model.step.d.amax();
             let rounding = f64::EPSILON * self.merit(program, &self.point).abs().max(1e-8);
@@ -177,19 +170,19 @@ impl TrustRegion {
             let point = self.point.clone();
             program.report(&point, &progress)?;
             if ratio > ACCEPT && reached(program, &self.point) {
-                return Ok(Ending::Reached);
+                return Ok(Status::Converged);
             }
-            if let Some(ending) = self.settled(program) {
-                return Ok(ending);
+            if self.is_solved(program) {
+                return Ok(Status::Converged);
             }
         }
     }
 
     /// Classifies a point without further steps. It is infeasible only if the linearised violation
     /// cannot be reduced by more than `share` in a box of the size of the point.
-    fn end(&mut self, program: &mut Program<'_>, share: f64) -> Ending {
+    fn end(&mut self, program: &mut Program<'_>, share: f64) -> Status {
         if program.is_feasible(&self.point.c) {
-            return Ending::Stalled;
+            return Status::Stalled;
         }
         let (radius, goal) = (self.radius, self.goal);
         self.radius = self.point.x.amax().max(1.0);
@@ -201,9 +194,9 @@ impl TrustRegion {
         let now = program.total_violation(&c);
         match step {
             Some(step) if now - self.linear_violation(program, &step.d) <= share * now => {
-                Ending::Infeasible
+                infeasible(program, &self.point)
             }
-            _ => Ending::Stalled,
+            _ => Status::Stalled,
         }
     }
 
@@ -213,24 +206,14 @@ impl TrustRegion {
         scaled_residual(program, &self.point, &self.slopes, &z)
     }
 
-    /// Factor by which the objective should be scaled further, if any.
-    pub(crate) fn better_scale(&self, program: &Program<'_>) -> Option<f64> {
-        let curvature = self.b.newest_curvature().unwrap_or(0.0);
-        program.better_scale(&self.point, &self.slopes.g, curvature)
-    }
-
-    /// The ending of a run without further steps.
-    fn settled(&self, program: &Program<'_>) -> Option<Ending> {
+    /// Whether the run may end here.
+    fn is_solved(&self, program: &Program<'_>) -> bool {
         if self.goal == Goal::Feasibility {
-            return None;
+            return false;
         }
         let z = self.multipliers(program);
-        let scaled = self.optimality(program);
-        match judge(program, &self.point, &self.slopes, &z, scaled) {
-            Verdict::Solved => Some(Ending::Reached),
-            Verdict::SolvedInScaledUnits => self.better_scale(program).map(|_| Ending::Misscaled),
-            Verdict::Unsolved => None,
-        }
+        let scaled = scaled_residual(program, &self.point, &self.slopes, &z);
+        is_solved_on_the_way(program, &self.point, &self.slopes, &z, scaled)
     }
 
     /// Exact penalty function w f + Σ ν_j violation_j.
