@@ -1,8 +1,7 @@
 //! When a run has converged: residuals of the optimality conditions, and the tests on them.
 //!
-//! [`is_solved`] tests a point without further progress, [`is_solved_on_the_way`] one from which steps
-//! may still lead on, [`is_at_precision`] one whose steps are lost in rounding. How a run ended is in
-//! `ending`.
+//! [`is_solved`] tests a point, [`is_at_precision`] one whose steps are lost in rounding. How a run
+//! ended is in `ending`.
 
 use nalgebra::DVector;
 
@@ -145,31 +144,8 @@ impl ScaledMultipliers {
     }
 }
 
-/// A gradient below the first part of the typical gradient counts as vanishing. A remaining force
-/// up to the second part of the gradient shows that multipliers balance it.
-const VANISHING: f64 = 1e-5;
-const BALANCED: f64 = 0.1;
-
 /// A change of x by this number of rounding errors changes its last digits only.
 const LAST_DIGITS: f64 = 10.0;
-
-/// Whether a run may end at a point. It goes on where multipliers balance a gradient that does not
-/// vanish, but the remaining force is not small relative to this gradient.
-pub(crate) fn is_solved_on_the_way(
-    program: &Program<'_>,
-    point: &Point,
-    slopes: &Derivatives,
-    z: &ScaledMultipliers,
-    scaled: f64,
-) -> bool {
-    let force = &slopes.g + slopes.a.tr_mul(&z.y) - &z.zl + &z.zu;
-    let (left, gradient) = (force.amax(), slopes.g.amax());
-    let typical = program.typical_gradient() * program.scaling.objective;
-    let balanced = left > program.options.tolerance * gradient
-        && left <= BALANCED * gradient
-        && gradient > VANISHING * typical;
-    !balanced && is_solved(program, point, slopes, z, scaled)
-}
 
 /// Whether the residuals meet the tolerances in scaled units and relative to the gradients of the
 /// run.

@@ -59,8 +59,8 @@ const NEARBY: f64 = 1e-6;
 /// Share of a derivative by which it must differ from a difference to be doubted.
 const DOUBTED: f64 = 0.5;
 
-/// Change of the objective by a violation within the tolerance, relative to max(1, |f|), from which
-/// the multiplier of a row counts as huge.
+/// Change of the objective by a violation within the tolerance, relative to |f| or its unit, from
+/// which the multiplier of a row counts as huge.
 const HUGE: f64 = 1e-3;
 
 /// The row without which no multipliers exist: its multiplier is huge, and its derivative changes
@@ -76,7 +76,8 @@ pub(crate) fn degenerate_row(
     let rows = 0..program.rows.len();
     let steep = |k: &usize| y[program.rows[*k]].abs();
     let k = rows.max_by(|a, b| steep(a).total_cmp(&steep(b)))?;
-    let f = (point.f / program.scaling.objective).abs().max(1.0);
+    let f = (point.f / program.scaling.objective).abs();
+    let f = f.max(program.unit_of_objective());
     if steep(&k) * program.options.constraint_tolerance <= HUGE * f {
         return None;
     }

@@ -173,7 +173,9 @@ impl FinalIterate {
         }
         let (point, slopes, z) = (&self.point, &self.slopes, &self.multipliers);
         let kkt = self.kkt(program);
-        let absolute = is_solved_in_user_units(program, point, slopes, &kkt);
+        // In a large unit every residual is small.
+        let absolute = is_solved_in_user_units(program, point, slopes, &kkt)
+            && kkt.relative_stationarity <= program.options.tolerance.sqrt();
         // Unbounded multipliers show in the complementarity products even if forces vanish. Where
         // all multipliers vanish, these products say nothing.
         let tolerance = program.options.tolerance;

@@ -14,19 +14,12 @@ use crate::optimiser::state::Scaling;
 /// Largest factor of a function. A gradient that is smaller by this factor is rounding.
 const LARGEST_LIFT: f64 = 1e12;
 
-/// A row whose violation exceeds its gradient by this factor is flat: steps of so many sizes of the
-/// start would lead nowhere.
-const FLAT_ROW: f64 = 1e4;
-
 /// A restart keeps the units of the variables if the size of the point is between these, or so
 /// small that the point is zero.
 const ZERO: f64 = 1e-8;
 const NEAR_ONE: RangeInclusive<f64> = 1e-3..=1e3;
 
-/// Number of first points of a run.
-const FIRST_POINTS: usize = 12;
-
-/// Number of largest gradients of the first points that are ignored.
+/// Number of largest gradients of a run that are ignored.
 const LARGEST_LEFT_OUT: usize = 2;
 
 /// Units of a scaled program.
@@ -53,9 +46,7 @@ impl Program<'_> {
         let mut units = self.units();
         units.objective = factor(wanted, slopes.g.amax() / self.scaling.objective);
         for (k, &j) in self.rows.iter().enumerate() {
-            let violation = self.row_violation(&point.c, k);
-            let norm = slopes.a.row_amax(k).max(violation / FLAT_ROW);
-            let norm = norm / self.scaling.constraints[j];
+            let norm = slopes.a.row_amax(k) / self.scaling.constraints[j];
             let bounds = [self.user_row_lower[j], self.user_row_upper[j]];
             units.constraints[j] = if bounds[0] < bounds[1] {
                 let finite = bounds.iter().filter(|b| b.is_finite());
@@ -234,23 +225,16 @@ impl Program<'_> {
         }
     }
 
-    /// Unit of the gradient of the objective, in the units of the user: the third largest ‖∇f‖∞ of
-    /// the first dozen points, or the median of all points if that is larger. It scales with the
-    /// objective. Neither a steep nor a flat start determines it, and many points near the optimum
-    /// do not lower it.
+    /// Unit of the gradient of the objective, in the units of the user: the third largest ‖∇f‖∞ of the
+    /// run, or the median of fewer than five. It scales with the objective. Neither a steep nor a flat
+    /// start determines it, and many points near the optimum do not lower it.
     pub(crate) fn typical_gradient(&self) -> f64 {
-        let largest = |norms: &[f64], most: usize| {
-            let mut norms: Vec<f64> = norms.iter().copied().filter(|v| *v > 0.0).collect();
-            norms.sort_by(|a, b| b.total_cmp(a));
-            norms
-                .get(most.min(norms.len().saturating_sub(1) / 2))
-                .copied()
-                .unwrap_or(0.0)
-        };
-        let all = &self.gradient_norms;
-        let early = largest(&all[..all.len().min(FIRST_POINTS)], LARGEST_LEFT_OUT);
-        let typical = early.max(largest(all, usize::MAX));
-        if typical > 0.0 { typical } else { 1.0 }
+        let mut norms: Vec<f64> = self.gradient_norms.clone();
+        norms.retain(|v| *v > 0.0);
+        norms.sort_by(|a, b| b.total_cmp(a));
+        let median = norms.len().saturating_sub(1) / 2;
+        let typical = norms.get(median.min(LARGEST_LEFT_OUT));
+        typical.copied().unwrap_or(1.0)
     }
 
     /// Unit of an objective that vanishes, in the unit of the user.

@@ -2,7 +2,7 @@
 
 use nalgebra::DVector;
 
-use crate::optimiser::convergence::{is_at_precision, is_solved_on_the_way};
+use crate::optimiser::convergence::is_solved;
 use crate::optimiser::doubts::wrong_gradients;
 use crate::optimiser::ending::Status;
 use crate::optimiser::interior_point::barrier::BarrierRule;
@@ -13,7 +13,6 @@ use crate::optimiser::interior_point::line_search::{Accepted, LineSearch, infeas
 use crate::optimiser::linear::quasi_newton::QuasiNewton;
 use crate::optimiser::multipliers::ScaledMultipliers;
 use crate::optimiser::observer::Phase;
-use crate::optimiser::outcome::Counts;
 use crate::optimiser::program::{Derivatives, EarlyExit, Point, Program, Progress};
 
 /// Infeasibility below which multipliers of rows are recomputed by least squares.
@@ -27,14 +26,9 @@ const LONGEST_CRAWL: usize = 4;
 const CRAWLING: f64 = 1e-4;
 const LEAVE_CRAWL: f64 = 0.1;
 
-/// After so many iterations or evaluations within this distance, relative to the size of the point,
-/// a run ends.
-const LONGEST_STAY: usize = 30;
+/// After so many evaluations within this distance, relative to the size of the point, a run ends.
 const MOST_TRIALS: usize = 120;
 const NEARBY: f64 = 1e-8;
-
-/// Number of successive steps that may gain less than rounding.
-const LOST_STEPS: usize = 4;
 
 /// How often the gradients are tested.
 const MOST_DOUBTS: usize = 2;
@@ -53,8 +47,8 @@ pub(crate) struct InteriorPoint {
     short_steps: usize,
     /// How often the gradients were tested.
     doubts: usize,
-    /// A point that the iteration has not left by more than `NEARBY`, and the work done before.
-    anchor: (DVector<f64>, Counts),
+    /// A point that the iteration has not left by more than `NEARBY`, and the evaluations before.
+    anchor: (DVector<f64>, usize),
     /// Variables on which nothing has depended so far. They have no barrier, so they stay.
     idle: Vec<usize>,
 }
@@ -108,7 +102,7 @@ impl InteriorPoint {
             theta_small: 1e-4 * theta.max(1.0),
             short_steps: 0,
             doubts: 0,
-            anchor: (at.point.x.clone(), program.counts),
+            anchor: (at.point.x.clone(), program.counts.evaluations),
             idle,
             layout,
             at,
@@ -170,7 +164,7 @@ impl InteriorPoint {
 
     /// Scaled residual of the optimality conditions.
     pub(crate) fn optimality(&self) -> f64 {
-        self.at.residuals(&self.layout, 0.0).largest()
+        self.at.residual(&self.layout, 0.0)
     }
 
     /// Iterates until the run ends.
@@ -180,18 +174,12 @@ impl InteriorPoint {
 
     fn iterate(&mut self, program: &mut Program<'_>) -> Result<Status, EarlyExit> {
         let mut failures = 0;
-        let mut lost = 0;
         loop {
             self.activate_bounds(program);
             if self.is_solved(program) {
                 return Ok(Status::Converged);
             }
-            lost = if self.is_at_precision(program) {
-                lost + 1
-            } else {
-                0
-            };
-            if lost > LOST_STEPS || self.stays(program) {
+            if self.stays(program) {
                 return Ok(Status::Stalled);
             }
             if program.is_unbounded(&self.at.point) {
@@ -240,17 +228,16 @@ impl InteriorPoint {
         }
     }
 
-    /// Whether the point has stayed in one place for many iterations.
+    /// Whether the point has stayed in one place for many evaluations.
     fn stays(&mut self, program: &Program<'_>) -> bool {
         let (anchor, before) = &self.anchor;
-        let now = program.counts;
+        let now = program.counts.evaluations;
         let x = &self.at.point.x;
         if (x - anchor).amax() > NEARBY * x.amax().max(1.0) {
             self.anchor = (x.clone(), now);
             return false;
         }
-        now.iterations - before.iterations > LONGEST_STAY
-            || now.evaluations - before.evaluations > MOST_TRIALS
+        now - before > MOST_TRIALS
     }
 
     /// Adds barriers for the idle variables on which something depends at this point.
@@ -385,12 +372,6 @@ impl InteriorPoint {
         }
     }
 
-    fn is_at_precision(&mut self, program: &Program<'_>) -> bool {
-        let z = self.multipliers(program);
-        let (point, slopes) = (&self.at.point, &self.at.slopes);
-        is_at_precision(program, point, slopes, &z, &mut self.b)
-    }
-
     fn is_solved(&self, program: &Program<'_>) -> bool {
         let scaled = self.optimality();
         let is_wide = !self.is_gap_least() && self.gap() > self.allowed_gap(program);
@@ -399,6 +380,6 @@ impl InteriorPoint {
         }
         let z = self.multipliers(program);
         let (point, slopes) = (&self.at.point, &self.at.slopes);
-        is_solved_on_the_way(program, point, slopes, &z, scaled)
+        is_solved(program, point, slopes, &z, scaled)
     }
 }

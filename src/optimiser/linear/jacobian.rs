@@ -175,12 +175,6 @@ impl Jacobian {
         }
     }
 
-    /// Variables and entries of row `j`, which may be changed.
-    pub(crate) fn row_mut(&mut self, j: usize) -> (&[usize], &mut [f64]) {
-        let part = self.starts[j]..self.starts[j + 1];
-        (&self.index[part.clone()], &mut self.value[part])
-    }
-
     /// Whether each column has an entry that is not zero.
     pub(crate) fn touched(&self) -> Vec<bool> {
         let mut touched = vec![false; self.columns];

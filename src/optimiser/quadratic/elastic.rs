@@ -43,33 +43,11 @@ impl ElasticQp {
         }
     }
 
-    /// Solves the subproblem. A short step is solved again in a smaller box. Then the equations of
-    /// the active set are solved. `None` if Clarabel fails or its answer violates the optimality
+    /// Solves the subproblem, then the equations of its active set. `None` if Clarabel fails or its answer violates the optimality
     /// conditions.
     pub(crate) fn solve(&mut self, data: &QpData<'_>, counts: &mut Counts) -> Option<QpStep> {
-        let found = self.solve_in_boxes(data, counts)?;
+        let found = self.solve_once(data, counts)?;
         Some(refine(data, &found).unwrap_or(found))
-    }
-
-    fn solve_in_boxes(&mut self, data: &QpData<'_>, counts: &mut Counts) -> Option<QpStep> {
-        let coarse = self.solve_once(data, counts)?;
-        let size = coarse.d.amax();
-        let radius = data.upper.amax().max(data.lower.amax());
-        if size == 0.0 || size > 1e-2 * radius {
-            return Some(coarse);
-        }
-        let limit = 10.0 * size;
-        let lower = data.lower.map(|v| v.max(-limit));
-        let upper = data.upper.map(|v| v.min(limit));
-        let fine = self.solve_once(
-            &QpData {
-                lower: &lower,
-                upper: &upper,
-                ..*data
-            },
-            counts,
-        );
-        Some(fine.unwrap_or(coarse))
     }
 
     fn solve_once(&mut self, data: &QpData<'_>, counts: &mut Counts) -> Option<QpStep> {

@@ -6,7 +6,7 @@
 
 use nalgebra::DVector;
 
-use crate::optimiser::convergence::{is_solved_on_the_way, scaled_residual};
+use crate::optimiser::convergence::{is_solved, scaled_residual};
 use crate::optimiser::ending::{Status, infeasible};
 use crate::optimiser::linear::quasi_newton::QuasiNewton;
 use crate::optimiser::multipliers::ScaledMultipliers;
@@ -17,14 +17,6 @@ use crate::optimiser::trust_region::steering::{Goal, IRREDUCIBLE, Model, TrustRe
 
 /// Share of the predicted reduction for which a step is accepted.
 const ACCEPT: f64 = 1e-4;
-
-/// Number of successive steps whose predicted reduction may be less than rounding.
-const LOST_STEPS: usize = 4;
-
-/// How often the matrix is cleared if there is no progress, and the next radius relative to the
-/// size of the point.
-const RENEWALS: usize = 3;
-const RENEWED_RADIUS: f64 = 0.1;
 
 /// Share of the violation that the linearisation may still remove at an infeasible point.
 const STATIONARY: f64 = 1e-4;
@@ -76,9 +68,7 @@ impl TrustRegion {
     ) -> Result<Status, EarlyExit> {
         let tiny = 1e-13;
         let mut rejected = 0;
-        let mut lost = 0;
         let mut failed = 0;
-        let mut renewals = 0;
         loop {
             if self.goal == Goal::Optimum && program.is_unbounded(&self.point) {
                 return Ok(Status::Unbounded);
@@ -101,24 +91,9 @@ impl TrustRegion {
                 return Ok(Status::Converged);
             }
             let size = model.step.d.amax();
-            let rounding = f64::EPSILON * self.merit(program, &self.point).abs().max(1e-8);
-            lost = if model.predicted <= rounding {
-                lost + 1
-            } else {
-                0
-            };
             let stays = self.inside(program, &model.step.d) == self.point.x;
-            let negligible = model.predicted <= 0.0 || stays || lost > LOST_STEPS;
-            if negligible || self.radius < tiny {
-                if renewals == RENEWALS || self.b.is_empty() {
-                    return Ok(self.end(program, STATIONARY));
-                }
-                // Curvature from long steps may make the subproblem too ill-conditioned.
-                renewals += 1;
-                lost = 0;
-                self.b.reset();
-                self.radius = RENEWED_RADIUS * self.point.x.amax().max(1.0);
-                continue;
+            if model.predicted <= 0.0 || stays || self.radius < tiny {
+                return Ok(self.end(program, STATIONARY));
             }
             program.next_iteration()?;
             let (ratio, trials) = self.attempt(program, &model, rejected >= LEARN)?;
@@ -213,7 +188,7 @@ impl TrustRegion {
         }
         let z = self.multipliers(program);
         let scaled = scaled_residual(program, &self.point, &self.slopes, &z);
-        is_solved_on_the_way(program, &self.point, &self.slopes, &z, scaled)
+        is_solved(program, &self.point, &self.slopes, &z, scaled)
     }
 
     /// Exact penalty function w f + Σ ν_j violation_j.
