@@ -27,6 +27,20 @@ pub(crate) fn gradient_norm(program: &Program<'_>, slopes: &Derivatives) -> f64 
         .fold(0.0, f64::max)
 }
 
+/// The row whose force |y_k| ‖∇c_k‖∞ is largest, if that exceeds the gradient by 1/√tolerance. So
+/// large forces balance each other and not the gradient: at their limit no multipliers exist
+/// (Fritz John conditions).
+pub(crate) fn dominant_row(
+    program: &Program<'_>,
+    slopes: &Derivatives,
+    z: &ScaledMultipliers,
+) -> Option<usize> {
+    let force = |k: usize| z.y[k].abs() * slopes.a.row_amax(k);
+    let k = (0..z.y.len()).max_by(|&a, &b| force(a).total_cmp(&force(b)))?;
+    let limit = slopes.g.amax() / program.options.tolerance.sqrt();
+    (force(k) > limit).then(|| program.rows[k])
+}
+
 /// Residuals at a point. The caller sets `scaled`.
 pub(crate) fn kkt(
     program: &Program<'_>,
@@ -144,9 +158,6 @@ impl ScaledMultipliers {
     }
 }
 
-/// A change of x by this number of rounding errors changes its last digits only.
-const LAST_DIGITS: f64 = 10.0;
-
 /// Whether the residuals meet the tolerances in scaled units and relative to the gradients of the
 /// run.
 pub(crate) fn is_solved_in_scaled_units(program: &Program<'_>, point: &Point, kkt: &Kkt) -> bool {
@@ -174,9 +185,7 @@ pub(crate) fn is_solved_in_user_units(
 }
 
 /// Whether the objective can show no further gain: the residuals meet the tolerances relative to
-/// the gradients of the run and the step −B⁻¹∇L gains less than the rounding of f; or they meet them
-/// in the units of the user and the step changes only the last digits of x. A run that starts at its
-/// solution has no gradients to compare with.
+/// the gradients of the run, and the step −B⁻¹∇L gains less than the rounding of f.
 pub(crate) fn is_at_precision(
     program: &Program<'_>,
     point: &Point,
@@ -185,15 +194,15 @@ pub(crate) fn is_at_precision(
     b: &mut QuasiNewton,
 ) -> bool {
     let kkt = kkt(program, point, slopes, z, 0.0);
-    let relative = is_solved_in_scaled_units(program, point, &kkt);
-    if !relative && !is_solved_in_user_units(program, point, slopes, &kkt) {
+    // The unit of a vanishing objective says nothing where f has digits.
+    let gap = kkt.complementarity * program.scaling.objective;
+    let closed = gap <= program.options.tolerance * point.f.abs();
+    if !closed || !is_solved_in_scaled_units(program, point, &kkt) {
         return false;
     }
     let force = &slopes.g + slopes.a.tr_mul(&z.y) - &z.zl + &z.zu;
-    b.newton_step(&force).is_some_and(|step| {
-        relative && 0.5 * step.dot(&force) <= f64::EPSILON * point.f.abs()
-            || step.amax() <= LAST_DIGITS * f64::EPSILON * point.x.amax()
-    })
+    let step = b.newton_step(&force);
+    step.is_some_and(|step| 0.5 * step.dot(&force) <= f64::EPSILON * point.f.abs())
 }
 
 /// Whether the residuals meet all tolerances.

@@ -5,7 +5,7 @@ use nalgebra::DVector;
 use serde::{Deserialize, Serialize};
 
 use crate::optimiser::convergence::{
-    is_at_precision, is_solved, is_solved_in_user_units, kkt, scaled_residual,
+    dominant_row, is_at_precision, is_solved, is_solved_in_user_units, kkt, scaled_residual,
 };
 use crate::optimiser::linear::quasi_newton::QuasiNewton;
 use crate::optimiser::multipliers::ScaledMultipliers;
@@ -84,10 +84,6 @@ impl From<EarlyExit> for Status {
     }
 }
 
-/// Step, relative to max(1, ‖x‖∞), of the test for descent. An objective that can fall must fall
-/// within it.
-const NEARBY: f64 = 1e-6;
-
 /// The final iterate of a method.
 pub(crate) struct FinalIterate {
     pub status: Status,
@@ -117,6 +113,11 @@ impl FinalIterate {
             _ => {}
         }
         self
+    }
+
+    /// The same with another status.
+    pub(crate) fn with_status(self, status: Status) -> FinalIterate {
+        FinalIterate { status, ..self }
     }
 
     /// Sets the program to the units of this iterate.
@@ -165,52 +166,34 @@ impl FinalIterate {
     }
 
     /// The same, with a new status if a method stalled: [`Status::Converged`] if the conditions
-    /// hold in the units of the user, [`Status::AtPrecision`] if rounding caused the stall. In
-    /// neither case may the Lagrangian fall nearby.
-    pub(crate) fn with_stall_named(mut self, program: &mut Program<'_>) -> FinalIterate {
+    /// hold in the units of the user, [`Status::AtPrecision`] if rounding caused the stall,
+    /// [`Status::Degenerate`] if a row dominates.
+    pub(crate) fn with_stall_named(mut self, program: &Program<'_>) -> FinalIterate {
         if self.status != Status::Stalled {
             return self;
         }
         let (point, slopes, z) = (&self.point, &self.slopes, &self.multipliers);
         let kkt = self.kkt(program);
-        // In a large unit every residual is small.
-        let absolute = is_solved_in_user_units(program, point, slopes, &kkt)
-            && kkt.relative_stationarity <= program.options.tolerance.sqrt();
+        let dominant = dominant_row(program, slopes, z);
+        let absolute = is_solved_in_user_units(program, point, slopes, &kkt) && dominant.is_none();
         // Unbounded multipliers show in the complementarity products even if forces vanish. Where
         // all multipliers vanish, these products say nothing.
         let tolerance = program.options.tolerance;
         let vanish = [&z.y, &z.zl, &z.zu].iter().all(|z| z.amax() <= tolerance);
         let precise = is_at_precision(program, point, slopes, z, &mut self.b);
         let holds = absolute && (kkt.relative_complementarity <= tolerance || precise && vanish);
-        if (holds || precise) && !self.falls_nearby(program) {
+        if holds || precise {
             self.status = if holds {
                 Status::Converged
             } else {
                 Status::AtPrecision
             };
+        } else if let Some(j) = dominant {
+            self.status = Status::Degenerate {
+                constraint: program.constraint_name(j),
+            };
         }
         self
-    }
-
-    /// Whether the Lagrangian falls along its steepest descent after a small step. True also if it
-    /// cannot be evaluated there.
-    fn falls_nearby(&self, program: &mut Program<'_>) -> bool {
-        let (z, x) = (&self.multipliers, &self.point.x);
-        let bounds = &z.zu - &z.zl;
-        let force = &self.slopes.g + self.slopes.a.tr_mul(&z.y) + &bounds;
-        let length = NEARBY * x.amax().max(1.0) / force.amax();
-        let moved = DVector::from_fn(x.len(), |i, _| {
-            (x[i] - length * force[i]).clamp(program.lower[i], program.upper[i])
-        });
-        let Ok(trial) = program.evaluate(&moved) else {
-            return true;
-        };
-        let terms = [
-            trial.f - self.point.f,
-            z.y.dot(&(&trial.c - &self.point.c)),
-            bounds.dot(&(&moved - x)),
-        ];
-        terms.iter().sum::<f64>() < -10.0 * f64::EPSILON * self.point.f.abs()
     }
 }
 

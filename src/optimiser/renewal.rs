@@ -5,9 +5,6 @@ use crate::optimiser::ending::FinalIterate;
 use crate::optimiser::ending::Status;
 use crate::optimiser::program::{Derivatives, Point, Program};
 
-/// Largest number of restarts.
-const RENEWALS: usize = 6;
-
 /// Restarts from a feasible point where `finish` stalled. The restart has new units, an empty
 /// quasi-Newton matrix and no earlier derivatives. It is repeated as long as the objective
 /// improves. Only after a restart without improvement may the end be [`Status::AtPrecision`].
@@ -17,7 +14,7 @@ pub(crate) fn renewed(
     run: impl Fn(&mut Program<'_>, (Point, Derivatives)) -> FinalIterate,
 ) -> FinalIterate {
     let norms = program.gradient_norms.clone();
-    for _ in 0..RENEWALS {
+    loop {
         if finish.status != Status::Stalled {
             return finish;
         }
@@ -56,5 +53,4 @@ pub(crate) fn renewed(
         }
         finish = next;
     }
-    finish
 }

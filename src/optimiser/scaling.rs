@@ -19,6 +19,10 @@ const LARGEST_LIFT: f64 = 1e12;
 const ZERO: f64 = 1e-8;
 const NEAR_ONE: RangeInclusive<f64> = 1e-3..=1e3;
 
+/// A row whose violation exceeds its gradient by this factor is flat: steps of so many sizes of the
+/// start would lead nowhere. Without this a plateau is left only at the limit of evaluations.
+const FLAT_ROW: f64 = 1e4;
+
 /// Number of largest gradients of a run that are ignored.
 const LARGEST_LEFT_OUT: usize = 2;
 
@@ -46,7 +50,9 @@ impl Program<'_> {
         let mut units = self.units();
         units.objective = factor(wanted, slopes.g.amax() / self.scaling.objective);
         for (k, &j) in self.rows.iter().enumerate() {
-            let norm = slopes.a.row_amax(k) / self.scaling.constraints[j];
+            let violation = self.row_violation(&point.c, k);
+            let norm = slopes.a.row_amax(k).max(violation / FLAT_ROW);
+            let norm = norm / self.scaling.constraints[j];
             let bounds = [self.user_row_lower[j], self.user_row_upper[j]];
             units.constraints[j] = if bounds[0] < bounds[1] {
                 let finite = bounds.iter().filter(|b| b.is_finite());

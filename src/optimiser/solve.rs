@@ -25,9 +25,6 @@ use crate::optimiser::well_posed;
 const FIRST_ITERATIONS: f64 = 0.7;
 const FIRST_EVALUATIONS: f64 = 0.35;
 
-/// How often a run continues from a point near one that seems infeasible.
-const ESCAPES: usize = 3;
-
 /// Minimises f(x) subject to c_L ≤ c(x) ≤ c_U and x_L ≤ x ≤ x_U.
 ///
 /// ```
@@ -182,48 +179,56 @@ fn attempt(
             finish.status = Status::Inconsistent { what };
         }
     }
-    for _ in 0..ESCAPES {
+    escaped(program, finish, |program, first| run(program, first, None))
+}
+
+/// What becomes of a final iterate that looks infeasible to first order: the end of a further run
+/// from a point that is feasible or less infeasible, or the point of the least violation.
+fn escaped(
+    program: &mut Program<'_>,
+    mut finish: FinalIterate,
+    run: impl Fn(&mut Program<'_>, (Point, Derivatives)) -> FinalIterate,
+) -> FinalIterate {
+    for may_leave in [true, false] {
         if !matches!(finish.status, Status::Infeasible { .. }) {
-            break;
+            return finish;
         }
-        // A run that has had a feasible point continues from it.
         if let Some(best) = program.feasible_best() {
             finish = match program.renew(best) {
-                Ok(first) => run(program, first, None),
+                Ok(first) => run(program, first),
                 Err(trouble) => {
                     finish.restore_units(program);
-                    finish.status = trouble.into();
-                    finish
+                    finish.with_status(trouble.into())
                 }
             };
             continue;
         }
-        match look_around(program, &finish.point) {
-            Ok(Neighbourhood::Less(first)) => finish = run(program, *first, None),
-            Ok(Neighbourhood::Flat) => {
-                finish.status = Status::Stalled;
-                break;
-            }
+        let around = if may_leave {
+            look_around(program, &finish.point)
+        } else {
+            Ok(Neighbourhood::More)
+        };
+        match around {
+            Ok(Neighbourhood::Less(first)) => finish = run(program, *first),
+            Ok(Neighbourhood::Flat) => return finish.with_status(Status::Stalled),
             Ok(Neighbourhood::More) | Err(EarlyExit::Failed(_)) => {
                 let (point, slopes, least) =
                     least_violation(program, finish.point.clone(), finish.slopes.clone());
-                if !program.is_feasible(&point.c) {
-                    finish = finish.infeasible_at(program, point, slopes);
-                    if !least {
-                        finish.status = Status::Stalled;
-                    }
-                    break;
+                if program.is_feasible(&point.c) {
+                    finish = run(program, (point, slopes));
+                } else {
+                    let at_least = finish.infeasible_at(program, point, slopes);
+                    return match least {
+                        true => at_least,
+                        false => at_least.with_status(Status::Stalled),
+                    };
                 }
-                finish = run(program, (point, slopes), None);
             }
-            Err(EarlyExit::Halt(status)) => {
-                finish.status = status;
-                break;
-            }
+            Err(EarlyExit::Halt(status)) => return finish.with_status(status),
         }
     }
     if matches!(finish.status, Status::Infeasible { .. }) && program.feasible_best().is_some() {
-        finish.status = Status::Stalled;
+        return finish.with_status(Status::Stalled);
     }
     finish
 }
@@ -248,6 +253,7 @@ fn auto(
                 | Status::IterationLimit
                 | Status::EvaluationLimit
                 | Status::AtPrecision
+                | Status::Degenerate { .. }
                 | Status::Infeasible { .. }
         );
         let large = program.free.len() > well_posed::LARGEST_TRUST_REGION;
@@ -276,6 +282,7 @@ fn auto(
         let keep = match kept.status {
             Status::Infeasible { .. } => undecided,
             Status::AtPrecision => undecided || next.is_worse_than(&kept, program),
+            Status::Degenerate { .. } => next.status != Status::Converged,
             _ => false,
         };
         if !keep {

@@ -4,9 +4,6 @@
 /// Share of the infeasibility by which a step must improve on a filter entry.
 pub(crate) const MARGIN: f64 = 1e-5;
 
-/// Growth of the infeasibility allowed after the filter was cleared.
-const GROWTH: f64 = 100.0;
-
 /// Least share of the predicted decrease of φ.
 const ARMIJO: f64 = 1e-4;
 
@@ -60,10 +57,9 @@ impl Filter {
         }
     }
 
-    /// Clears the filter at a point of infeasibility `theta`. It may then grow a hundredfold.
-    pub(crate) fn clear(&mut self, theta: f64) {
+    /// Forgets all entries. The largest infeasibility stays refused.
+    pub(crate) fn clear(&mut self) {
         self.entries.clear();
-        self.largest = self.largest.min(GROWTH * theta.max(10.0));
     }
 
     /// Whether (θ, φ) is acceptable to every entry.

@@ -2,7 +2,7 @@
 
 use nalgebra::DVector;
 
-use crate::optimiser::convergence::is_solved;
+use crate::optimiser::convergence::{dominant_row, is_solved};
 use crate::optimiser::doubts::wrong_gradients;
 use crate::optimiser::ending::Status;
 use crate::optimiser::interior_point::barrier::BarrierRule;
@@ -19,19 +19,16 @@ use crate::optimiser::program::{Derivatives, EarlyExit, Point, Program, Progress
 const NEARLY_FEASIBLE: f64 = 1e-6;
 
 /// A step that took more trials than this counts as short. Two short steps in succession show that
-/// the quasi-Newton matrix misleads. `LONGEST_CRAWL` short steps at an infeasibility above `CRAWLING`
-/// start a restoration, which must reduce it by the factor `LEAVE_CRAWL`.
+/// the quasi-Newton matrix misleads, or far from feasible points the filter.
 const SHORT_TRIALS: usize = 7;
-const LONGEST_CRAWL: usize = 4;
-const CRAWLING: f64 = 1e-4;
-const LEAVE_CRAWL: f64 = 0.1;
 
 /// After so many evaluations within this distance, relative to the size of the point, a run ends.
 const MOST_TRIALS: usize = 120;
 const NEARBY: f64 = 1e-8;
 
-/// How often the gradients are tested.
-const MOST_DOUBTS: usize = 2;
+/// Successive points with a dominant row after which the program is degenerate. A run towards
+/// multipliers that exist leaves such points sooner.
+const LONGEST_DOMINANCE: usize = 5;
 
 /// How often entries may be stiffened in one iteration.
 const STIFFENINGS: usize = 8;
@@ -43,10 +40,12 @@ pub(crate) struct InteriorPoint {
     pub b: QuasiNewton,
     pub barrier: BarrierRule,
     pub(crate) filter: Filter,
-    theta_small: f64,
-    short_steps: usize,
-    /// How often the gradients were tested.
-    doubts: usize,
+    pub(crate) theta_small: f64,
+    pub(crate) short_steps: usize,
+    /// Successive points at which a row dominated.
+    dominated: usize,
+    /// Whether the gradients were tested.
+    doubted: bool,
     /// A point that the iteration has not left by more than `NEARBY`, and the evaluations before.
     anchor: (DVector<f64>, usize),
     /// Variables on which nothing has depended so far. They have no barrier, so they stay.
@@ -101,7 +100,8 @@ impl InteriorPoint {
             filter: Filter::new(1e2 * theta.max(1.0)),
             theta_small: 1e-4 * theta.max(1.0),
             short_steps: 0,
-            doubts: 0,
+            dominated: 0,
+            doubted: false,
             anchor: (at.point.x.clone(), program.counts.evaluations),
             idle,
             layout,
@@ -179,6 +179,10 @@ impl InteriorPoint {
             if self.is_solved(program) {
                 return Ok(Status::Converged);
             }
+            if let Some(j) = self.degenerate(program) {
+                let constraint = program.constraint_name(j);
+                return Ok(Status::Degenerate { constraint });
+            }
             if self.stays(program) {
                 return Ok(Status::Stalled);
             }
@@ -188,7 +192,7 @@ impl InteriorPoint {
             let curvature = program.curvature(&self.at.point.x, &self.at.y)?;
             self.b.set_exact(curvature);
             if self.barrier.update(&self.at, &self.layout, &mut self.b) {
-                self.filter.clear(self.theta());
+                self.filter.clear();
             }
             program.next_iteration()?;
             let tau = (1.0 - self.barrier.mu).max(0.99);
@@ -208,14 +212,10 @@ impl InteriorPoint {
                 Some(accepted) => {
                     failures = 0;
                     self.step(program, accepted, dual, system.regularisation())?;
-                    if self.short_steps == LONGEST_CRAWL {
-                        self.short_steps = 0;
-                        let theta = self.theta();
-                        if theta > CRAWLING
-                            && let Some(ending) = self.restore(program, theta, LEAVE_CRAWL)?
-                        {
-                            return Ok(ending);
-                        }
+                    if self.short_steps > 0
+                        && let Some(ending) = self.leave_crawl(program)?
+                    {
+                        return Ok(ending);
                     }
                 }
                 None => {
@@ -226,6 +226,17 @@ impl InteriorPoint {
                 }
             }
         }
+    }
+
+    /// The row without which no multipliers exist: it dominates at `LONGEST_DOMINANCE` successive
+    /// points that solve the program beside the size of their multipliers, but not otherwise.
+    fn degenerate(&mut self, program: &Program<'_>) -> Option<usize> {
+        let solves =
+            self.optimality() <= program.options.tolerance && program.is_feasible(&self.at.point.c);
+        let z = self.multipliers(program);
+        let dominant = dominant_row(program, &self.at.slopes, &z).filter(|_| solves);
+        self.dominated = dominant.map_or(0, |_| self.dominated + 1);
+        dominant.filter(|_| self.dominated > LONGEST_DOMINANCE)
     }
 
     /// Whether the point has stayed in one place for many evaluations.
@@ -256,7 +267,7 @@ impl InteriorPoint {
                 (self.barrier.mu / (x - lower), self.barrier.mu / (upper - x));
         }
         if !woken.is_empty() {
-            self.filter.clear(self.theta());
+            self.filter.clear();
         }
     }
 
@@ -342,10 +353,6 @@ impl InteriorPoint {
         } else {
             0
         };
-        if self.short_steps == 2 {
-            self.b.reset();
-            self.doubt_gradients(program)?;
-        }
         let progress = Progress {
             optimality: self.optimality(),
             barrier: self.barrier.mu,
@@ -360,12 +367,11 @@ impl InteriorPoint {
     }
 
     /// Ends the run if the gradients are wrong here. Values that do not follow their gradients over
-    /// and over again are suspicious, but a curved valley has such values too: a few tests suffice.
-    fn doubt_gradients(&mut self, program: &mut Program<'_>) -> Result<(), EarlyExit> {
-        if self.doubts == MOST_DOUBTS {
+    /// and over again are suspicious, but a curved valley has such values too: one test suffices.
+    pub(crate) fn doubt_gradients(&mut self, program: &mut Program<'_>) -> Result<(), EarlyExit> {
+        if std::mem::replace(&mut self.doubted, true) {
             return Ok(());
         }
-        self.doubts += 1;
         match wrong_gradients(program, &self.at.point, &self.at.slopes) {
             Some(what) => Err(EarlyExit::Halt(Status::Inconsistent { what })),
             None => Ok(()),

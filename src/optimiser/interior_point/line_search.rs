@@ -16,9 +16,7 @@ const VANISHED: f64 = 1e-16;
 /// Least factor by which a refused step is shortened, and a corrected one may be shorter.
 const SHORTEST: f64 = 0.1;
 
-/// Factor by which a step to undefined functions is shortened, and how many such steps are
-/// announced.
-const UNDEFINED: f64 = 0.5;
+/// Number of halved steps that are announced where the functions are undefined.
 const FORESEEN: i32 = 16;
 
 /// The search ends below this share of the least sensible step.
@@ -107,7 +105,7 @@ impl LineSearch<'_> {
                 trials: 1,
             }));
         }
-        let least = self.least_step(&here).min(1e-3 * longest);
+        let least = self.least_step(&here);
         let mut alpha = longest;
         let mut trials = 0;
         let resolved = self.least_resolved_step(&direction);
@@ -153,7 +151,7 @@ impl LineSearch<'_> {
     /// Announces the shorter steps that follow if the functions are undefined at step length
     /// `alpha`.
     fn foresee(&self, program: &mut Program<'_>, direction: &Direction, alpha: f64) {
-        let at = |k: i32| &self.at.point.x + &direction.x * (alpha * UNDEFINED.powi(k));
+        let at = |k: i32| &self.at.point.x + &direction.x * (alpha * 0.5_f64.powi(k));
         program.foresee((1..=FORESEEN).map(at));
     }
 
@@ -161,7 +159,7 @@ impl LineSearch<'_> {
     /// the minimum of the parabola through its values, within bounds.
     fn shorten(&self, here: &Measure, alpha: f64, last: &Option<(f64, f64)>) -> f64 {
         let Some((theta, phi)) = *last else {
-            return UNDEFINED;
+            return 0.5;
         };
         let rise = phi - here.phi - alpha * here.slope;
         if here.slope >= 0.0 || rise <= 0.0 || theta > here.theta.max(self.theta_small) {

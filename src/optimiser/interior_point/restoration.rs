@@ -19,25 +19,41 @@ impl InteriorPoint {
     ) -> Result<Option<Status>, EarlyExit> {
         let theta = self.theta();
         let small = 1e-2 * program.options.tolerance.min(program.least_allowed());
-        if theta <= small || failures > 3 {
-            if failures == 1 && !self.b.is_empty() {
-                self.b.reset();
-                self.filter.clear(self.theta());
-                return Ok(None);
-            }
-            if theta <= small || failures > 6 {
-                return Ok(Some(Status::Stalled));
-            }
+        if theta <= small && failures == 1 && !self.b.is_empty() {
+            self.b.reset();
+            self.filter.clear();
+            return Ok(None);
         }
-        self.restore(program, theta, 0.9)
+        if theta <= small || failures > 6 {
+            return Ok(Some(Status::Stalled));
+        }
+        self.restore(program, theta)
     }
 
-    /// Reduces the violation by the factor `gain`, until the filter accepts the point.
+    /// Handles short steps: forgets the matrix near feasible points, restores feasibility elsewhere.
+    pub(crate) fn leave_crawl(
+        &mut self,
+        program: &mut Program<'_>,
+    ) -> Result<Option<Status>, EarlyExit> {
+        if self.short_steps == 2 {
+            self.b.reset();
+            self.doubt_gradients(program)?;
+        }
+        let theta = self.theta();
+        if self.short_steps == 4 {
+            self.short_steps = 0;
+            if theta > self.theta_small {
+                return self.restore(program, theta);
+            }
+        }
+        Ok(None)
+    }
+
+    /// Reduces the violation by a tenth or more, until the filter accepts the point.
     pub(crate) fn restore(
         &mut self,
         program: &mut Program<'_>,
         theta: f64,
-        gain: f64,
     ) -> Result<Option<Status>, EarlyExit> {
         let phi = self.layout.barrier_function(
             self.at.point.f,
@@ -53,7 +69,7 @@ impl InteriorPoint {
             let s = slacks(layout, p);
             let theta_new = infeasibility(&layout.residual(&p.c, &s), &p.c);
             let phi = layout.barrier_function(p.f, &p.x, &s, mu);
-            theta_new <= gain * theta && filter.accepts(theta_new, phi)
+            theta_new <= 0.9 * theta && filter.accepts(theta_new, phi)
         };
         let ending = search.iterate(program, accepted)?;
         let before = self.theta();
@@ -68,7 +84,7 @@ impl InteriorPoint {
             Status::Converged => Ok(None),
             Status::Infeasible { .. } => Ok(Some(ending)),
             _ if after < 0.5 * before => {
-                self.filter.clear(self.theta());
+                self.filter.clear();
                 Ok(None)
             }
             _ => Ok(Some(ending)),

@@ -125,7 +125,11 @@ impl KktSystem {
         let sigma = &self.sigma;
         match &self.factors {
             Factors::Dense(dense) => refined(
-                dense.refinements(),
+                if dense.regularisation > 0.0 {
+                    0
+                } else {
+                    REFINEMENTS
+                },
                 (p, q, a),
                 |p, v| p - b.multiply(v) - sigma.component_mul(v),
                 |y| self.d.component_mul(y),

@@ -18,12 +18,12 @@ use crate::optimiser::trust_region::steering::{Goal, IRREDUCIBLE, Model, TrustRe
 /// Share of the predicted reduction for which a step is accepted.
 const ACCEPT: f64 = 1e-4;
 
+/// Number of successive steps whose predicted reduction may be less than rounding. Without this, steep
+/// starts end at the limit of iterations.
+const LOST_STEPS: usize = 4;
+
 /// Share of the violation that the linearisation may still remove at an infeasible point.
 const STATIONARY: f64 = 1e-4;
-
-/// After this number of successive refused steps, gradients are evaluated at refused feasible
-/// points too. A matrix from few pairs refuses many steps before it knows a curved valley.
-const LEARN: usize = 1;
 
 impl TrustRegion {
     pub(crate) fn new(
@@ -67,7 +67,8 @@ impl TrustRegion {
         mut reached: impl FnMut(&Program<'_>, &Point) -> bool,
     ) -> Result<Status, EarlyExit> {
         let tiny = 1e-13;
-        let mut rejected = 0;
+        let mut refused = false;
+        let mut lost = 0;
         let mut failed = 0;
         loop {
             if self.goal == Goal::Optimum && program.is_unbounded(&self.point) {
@@ -92,11 +93,17 @@ impl TrustRegion {
             }
             let size = model.step.d.amax();
             let stays = self.inside(program, &model.step.d) == self.point.x;
-            if model.predicted <= 0.0 || stays || self.radius < tiny {
+            let rounding = f64::EPSILON * self.merit(program, &self.point).abs().max(1e-8);
+            lost = if model.predicted <= rounding {
+                lost + 1
+            } else {
+                0
+            };
+            if model.predicted <= 0.0 || stays || lost > LOST_STEPS || self.radius < tiny {
                 return Ok(self.end(program, STATIONARY));
             }
             program.next_iteration()?;
-            let (ratio, trials) = self.attempt(program, &model, rejected >= LEARN)?;
+            let (ratio, trials) = self.attempt(program, &model, refused)?;
             let boundary = size >= 0.99 * self.radius;
             let radius = self.radius;
             if ratio < 0.25 {
@@ -119,13 +126,8 @@ impl TrustRegion {
                     self.radius *= 2.5;
                 }
             }
-            rejected = match ratio {
-                f64::NEG_INFINITY => rejected,
-                r if r > ACCEPT => 0,
-                _ => rejected + 1,
-            };
-            if rejected == 8 {
-                self.b.reset();
+            if ratio != f64::NEG_INFINITY {
+                refused = ratio <= ACCEPT;
             }
             let scaled = self.optimality(program);
             let progress = Progress {
@@ -253,7 +255,9 @@ impl TrustRegion {
         })
     }
 
-    /// Adds the curvature between the point and a refused point to the matrix.
+    /// Adds the curvature between the point and a refused point to the matrix, after the second
+    /// refused step in succession. A matrix from few pairs refuses many steps before it knows a
+    /// curved valley.
     fn learn(&mut self, program: &mut Program<'_>, trial: &Point) -> Result<(), EarlyExit> {
         let slopes = match program.gradients(&trial.x) {
             Ok(slopes) => slopes,

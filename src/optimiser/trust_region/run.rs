@@ -8,9 +8,6 @@ use crate::optimiser::renewal::renewed;
 use crate::optimiser::state::SavedState;
 use crate::optimiser::trust_region::steering::{Goal, TrustRegion};
 
-/// How often the trust-region method looks for a feasible point after the penalties failed.
-const FEASIBILITY_PHASES: usize = 2;
-
 pub(crate) fn trust_region(
     program: &mut Program<'_>,
     point: Point,
@@ -38,20 +35,16 @@ fn finish_trust_region(program: &mut Program<'_>, mut method: TrustRegion) -> Fi
         ending.unwrap_or_else(Status::from)
     };
     let mut status = optimise(program, &mut method);
-    for _ in 0..FEASIBILITY_PHASES {
-        let stuck = matches!(status, Status::Stalled | Status::Infeasible { .. });
-        if !stuck || program.is_feasible(&method.point.c) {
-            break;
-        }
+    let stuck = matches!(status, Status::Stalled | Status::Infeasible { .. });
+    if stuck && !program.is_feasible(&method.point.c) {
         let (point, slopes) = (method.point, method.slopes);
         let mut phase = TrustRegion::new(program, point, slopes, Goal::Feasibility);
         let ending = phase.iterate(program, |program, p| program.is_feasible(&p.c));
         status = ending.unwrap_or_else(Status::from);
         method = TrustRegion::new(program, phase.point, phase.slopes, Goal::Optimum);
-        if status != Status::Converged {
-            break;
+        if status == Status::Converged {
+            status = optimise(program, &mut method);
         }
-        status = optimise(program, &mut method);
     }
     FinalIterate {
         status,
