@@ -27,9 +27,9 @@ pub(crate) fn gradient_norm(program: &Program<'_>, slopes: &Derivatives) -> f64 
         .fold(0.0, f64::max)
 }
 
-/// The row whose force |y_k| ‖∇c_k‖∞ is largest, if that exceeds the gradient by 1/√tolerance. So
-/// large forces balance each other and not the gradient: at their limit no multipliers exist
-/// (Fritz John conditions).
+/// The row whose force |y_k| ‖∇c_k‖∞ is largest, if that exceeds the gradient by 1/√tolerance and other
+/// forces balance it to the tolerance. Beside it the objective does not count: at the limit of such
+/// points no multipliers exist (conditions of Fritz John).
 pub(crate) fn dominant_row(
     program: &Program<'_>,
     slopes: &Derivatives,
@@ -37,8 +37,10 @@ pub(crate) fn dominant_row(
 ) -> Option<usize> {
     let force = |k: usize| z.y[k].abs() * slopes.a.row_amax(k);
     let k = (0..z.y.len()).max_by(|&a, &b| force(a).total_cmp(&force(b)))?;
-    let limit = slopes.g.amax() / program.options.tolerance.sqrt();
-    (force(k) > limit).then(|| program.rows[k])
+    let tolerance = program.options.tolerance;
+    let left = &slopes.g + slopes.a.tr_mul(&z.y) - &z.zl + &z.zu;
+    let dominates = force(k) > slopes.g.amax() / tolerance.sqrt();
+    (dominates && left.amax() <= tolerance * force(k)).then(|| program.rows[k])
 }
 
 /// Residuals at a point. The caller sets `scaled`.
