@@ -14,9 +14,8 @@ use crate::optimiser::state::Scaling;
 /// Largest factor of a function. A gradient that is smaller by this factor is rounding.
 const LARGEST_LIFT: f64 = 1e12;
 
-/// A restart keeps the units of the variables if the size of the point is between these, or so
-/// small that the point is zero.
-const ZERO: f64 = 1e-8;
+/// A restart keeps the units of the variables if the size of the point is between these. Always to
+/// change them costs one problem of the bed; never to, far starts in the tests.
 const NEAR_ONE: RangeInclusive<f64> = 1e-3..=1e3;
 
 /// A row whose violation exceeds its gradient by this factor is flat: steps of so many sizes of the
@@ -164,7 +163,7 @@ impl Program<'_> {
     /// derivatives are forgotten. Returns the point and its derivatives in these units.
     pub(crate) fn renew(&mut self, mut point: Point) -> Result<(Point, Derivatives), EarlyExit> {
         let size = point.x.amax();
-        if size > ZERO && !NEAR_ONE.contains(&size) {
+        if size > 0.0 && !NEAR_ONE.contains(&size) {
             let mut units = self.units();
             units.length *= size;
             self.set_units(&units);

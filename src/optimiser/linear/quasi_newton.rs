@@ -14,9 +14,6 @@ const CURVATURE: f64 = 1.5e-8;
 /// Factor of the scale σ when pairs without positive curvature clear the memory.
 const FLATTER: f64 = 0.1;
 
-/// Least scale. It allows steps of 1e20 gradients in an unbounded program.
-const FLATTEST: f64 = 1e-20;
-
 /// Share of a change of the gradient that a separable model may leave unexplained.
 const FORETOLD: f64 = 0.2;
 
@@ -244,7 +241,7 @@ impl QuasiNewton {
             self.skipped += 1;
             if self.skipped >= 2 {
                 self.reset();
-                self.sigma = (FLATTER * self.sigma).max(FLATTEST);
+                self.sigma = (FLATTER * self.sigma).max(f64::MIN_POSITIVE);
             }
             return;
         }
