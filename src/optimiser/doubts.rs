@@ -6,11 +6,9 @@ use nalgebra::DVector;
 use crate::optimiser::ending::FinalIterate;
 use crate::optimiser::ending::Status;
 use crate::optimiser::multipliers::{ScaledMultipliers, user_multipliers};
-use crate::optimiser::program::{Derivatives, Point, Program};
+use crate::optimiser::program::{Derivatives, FAR, Point, Program};
 
-/// Distance from the first point, relative to its size, beyond which a solution is doubted, and how
-/// often this distance is then doubled.
-const DOUBTFUL: f64 = 1e4;
+/// How often the distance of a doubtful solution from the first point is doubled.
 const DOUBLINGS: i32 = 6;
 
 /// A solution very far from the first point becomes [`Status::Unbounded`] if the objective falls on
@@ -21,13 +19,13 @@ fn unless_it_falls(program: &mut Program<'_>, mut finish: FinalIterate) -> Final
     };
     let mut way = &finish.point.x - &first;
     let length = way.amax();
-    let doubtful = length > DOUBTFUL * first.amax().max(1.0);
+    let doubtful = length > FAR * first.amax().max(1.0);
     if !doubtful || finish.status != Status::Converged {
         return finish;
     }
     // Only the variables that went far go on.
     way.iter_mut()
-        .filter(|v| v.abs() <= length / DOUBTFUL)
+        .filter(|v| v.abs() <= length / FAR)
         .for_each(|v| *v = 0.0);
     let unit = finish.point.f.abs().max(program.scaling.objective);
     let mut least = program.options.tolerance * unit;

@@ -10,8 +10,6 @@ use crate::optimiser::program::{Derivatives, EarlyExit, Point, Program};
 
 /// Longest step, relative to the size of the point.
 const LONGEST: f64 = 100.0;
-/// Part of the longest step below which the search ends.
-const VANISHED: f64 = 1e-16;
 
 /// Least factor by which a refused step is shortened, and a corrected one may be shorter.
 const SHORTEST: f64 = 0.1;
@@ -110,7 +108,7 @@ impl LineSearch<'_> {
         let mut trials = 0;
         let resolved = self.least_resolved_step(&direction);
         loop {
-            let goes_on = alpha >= least && alpha > VANISHED * longest && alpha > resolved;
+            let goes_on = alpha >= least && alpha > resolved;
             if !goes_on {
                 return Ok(None);
             }

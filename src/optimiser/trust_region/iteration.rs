@@ -22,9 +22,6 @@ const ACCEPT: f64 = 1e-4;
 /// starts end at the limit of iterations.
 const LOST_STEPS: usize = 4;
 
-/// Share of the violation that the linearisation may still remove at an infeasible point.
-const STATIONARY: f64 = 1e-4;
-
 impl TrustRegion {
     pub(crate) fn new(
         program: &Program<'_>,
@@ -76,7 +73,7 @@ impl TrustRegion {
             }
             let Some(model) = self.solve_model(program) else {
                 if self.b.is_empty() && self.radius < 1e-6 {
-                    return Ok(self.end(program, STATIONARY));
+                    return Ok(self.end(program));
                 }
                 self.b.reset();
                 self.radius *= 0.1;
@@ -84,7 +81,7 @@ impl TrustRegion {
             };
             self.y.copy_from(&model.step.y);
             if model.irreducible
-                && let ending @ Status::Infeasible { .. } = self.end(program, IRREDUCIBLE)
+                && let ending @ Status::Infeasible { .. } = self.end(program)
             {
                 return Ok(ending);
             }
@@ -100,7 +97,7 @@ impl TrustRegion {
                 0
             };
             if model.predicted <= 0.0 || stays || lost > LOST_STEPS || self.radius < tiny {
-                return Ok(self.end(program, STATIONARY));
+                return Ok(self.end(program));
             }
             program.next_iteration()?;
             let (ratio, trials) = self.attempt(program, &model, refused)?;
@@ -156,8 +153,8 @@ impl TrustRegion {
     }
 
     /// Classifies a point without further steps. It is infeasible only if the linearised violation
-    /// cannot be reduced by more than `share` in a box of the size of the point.
-    fn end(&mut self, program: &mut Program<'_>, share: f64) -> Status {
+    /// cannot be reduced by more than a small share in a box of the size of the point.
+    fn end(&mut self, program: &mut Program<'_>) -> Status {
         if program.is_feasible(&self.point.c) {
             return Status::Stalled;
         }
@@ -170,7 +167,7 @@ impl TrustRegion {
         (self.radius, self.goal, self.penalty) = (radius, goal, kept);
         let now = program.total_violation(&c);
         match step {
-            Some(step) if now - self.linear_violation(program, &step.d) <= share * now => {
+            Some(step) if now - self.linear_violation(program, &step.d) <= IRREDUCIBLE * now => {
                 infeasible(program, &self.point)
             }
             _ => Status::Stalled,
