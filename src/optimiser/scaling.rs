@@ -22,6 +22,9 @@ const NEAR_ONE: RangeInclusive<f64> = 1e-3..=1e3;
 /// start would lead nowhere. Without this a plateau is left only at the limit of evaluations.
 const FLAT_ROW: f64 = 1e4;
 
+/// A start below this part of the largest may be in another unit.
+const MIXED: f64 = 1e-3;
+
 /// Number of largest gradients of a run that are ignored.
 const LARGEST_LEFT_OUT: usize = 2;
 
@@ -30,6 +33,7 @@ const LARGEST_LEFT_OUT: usize = 2;
 pub(crate) struct Units {
     pub objective: f64,
     constraints: Vec<f64>,
+    variables: Vec<f64>,
     /// [`Program::length`].
     length: f64,
 }
@@ -72,24 +76,14 @@ impl Program<'_> {
     ) {
         // So many entries that later points cannot lower it.
         self.gradient_norms = vec![saved.typical_gradient; LARGEST_LEFT_OUT + 1];
+        let ratio = |&i: &usize| saved.variables[i] / self.scaling.variables[i];
         let units = Units {
             objective: saved.objective,
             constraints: saved.constraints.clone(),
-            length: self.length * self.ratio_of_variables(saved),
+            variables: saved.variables.clone(),
+            length: self.length * self.free.iter().map(ratio).fold(0.0, f64::max),
         };
         self.change_units(&units, point, slopes);
-    }
-
-    /// Factor by which all units of variables in `saved` differ from the present ones; 1 if not all do.
-    fn ratio_of_variables(&self, saved: &Scaling) -> f64 {
-        let ratio = |&i: &usize| saved.variables[i] / self.scaling.variables[i];
-        let first = self.free.first().map_or(1.0, ratio);
-        let same = |i: &usize| (ratio(i) - first).abs() <= 1e-9 * first;
-        if self.free.iter().all(same) {
-            first
-        } else {
-            1.0
-        }
     }
 
     /// The units in use.
@@ -97,18 +91,51 @@ impl Program<'_> {
         Units {
             objective: self.scaling.objective,
             constraints: self.scaling.constraints.clone(),
+            variables: self.scaling.variables.clone(),
             length: self.length,
         }
+    }
+
+    /// The units in use with all variables measured in `size` of their present units.
+    fn measured_by(&self, size: f64) -> Units {
+        let mut units = self.units();
+        units.length *= size;
+        units.variables.iter_mut().for_each(|unit| *unit *= size);
+        units
     }
 
     /// Makes the size of the start the unit of the variables, so that theirs does not matter.
     pub(crate) fn measure_start(&mut self) {
         let size = self.start().amax();
         if size > 0.0 {
-            let mut units = self.units();
-            units.length *= size;
-            self.set_units(&units);
+            self.set_units(&self.measured_by(size));
         }
+    }
+
+    /// Makes the size of a variable its own unit where that is far below the others and a function
+    /// depends on it in proportion. So variables in mixed units get the same size, and one that
+    /// happens to start near zero keeps the unit of all.
+    pub(crate) fn measure_mixed(&mut self, point: &mut Point, slopes: &mut Derivatives) {
+        let x = &point.x;
+        let mut share = DVector::zeros(x.len());
+        let mut compare = |row: &mut dyn Iterator<Item = (usize, f64)>| {
+            let changes: Vec<(usize, f64)> = row.map(|(k, v)| (k, (v * x[k]).abs())).collect();
+            let largest = changes.iter().fold(f64::MIN_POSITIVE, |a, c| a.max(c.1));
+            for (k, change) in changes {
+                share[k] = change.max(share[k] * largest) / largest;
+            }
+        };
+        compare(&mut slopes.g.iter().copied().enumerate());
+        (0..self.rows.len()).for_each(|k| compare(&mut slopes.a.row(k)));
+        let mut units = self.units();
+        let size = x.amax();
+        for (k, &i) in self.free.iter().enumerate() {
+            let part = x[k].abs() / size;
+            if part < MIXED && share[k] > MIXED.sqrt() {
+                units.variables[i] *= part;
+            }
+        }
+        self.change_units(&units, point, slopes);
     }
 
     /// Changes to `units`, with bounds and the best point. The caller converts the current point.
@@ -126,33 +153,37 @@ impl Program<'_> {
             }
         }
         self.scaling.constraints.clone_from(&units.constraints);
-        let length = units.length / self.length;
+        let stretch = self.stretch(units);
         self.length = units.length;
-        for &i in &self.free {
-            self.scaling.variables[i] *= length;
+        self.scaling.variables.clone_from(&units.variables);
+        let best = self.best.as_mut().map(|best| &mut best.x);
+        let first = self.first.as_mut().map(|(x, _)| x);
+        let points = best.into_iter().chain(first);
+        for x in points.chain([&mut self.lower, &mut self.upper]) {
+            x.component_div_assign(&stretch);
         }
-        self.lower /= length;
-        self.upper /= length;
-        if let Some(best) = &mut self.best {
-            best.x /= length;
-        }
-        if let Some((x, _)) = &mut self.first {
-            *x /= length;
-        }
+    }
+
+    /// Factors by which the units of the free variables are longer in `units`.
+    fn stretch(&self, units: &Units) -> DVector<f64> {
+        let ratio = |&i: &usize| units.variables[i] / self.scaling.variables[i];
+        DVector::from_iterator(self.free.len(), self.free.iter().map(ratio))
     }
 
     /// Converts program, point and slopes to `units`.
     fn change_units(&mut self, units: &Units, point: &mut Point, slopes: &mut Derivatives) {
         let objective = units.objective / self.scaling.objective;
-        let length = units.length / self.length;
-        point.x /= length;
+        let stretch = self.stretch(units);
+        point.x.component_div_assign(&stretch);
         point.f *= objective;
-        slopes.g *= objective * length;
+        slopes.g.component_mul_assign(&stretch);
+        slopes.g *= objective;
+        slopes.a.scale_columns(&stretch);
         slopes.fixed_g *= objective;
         for (k, &j) in self.rows.iter().enumerate() {
             let factor = units.constraints[j] / self.scaling.constraints[j];
             point.c[k] *= factor;
-            slopes.a.scale_row(k, factor * length);
+            slopes.a.scale_row(k, factor);
             slopes.fixed_a.scale_row(k, factor);
         }
         self.set_units(units);
@@ -164,9 +195,7 @@ impl Program<'_> {
     pub(crate) fn renew(&mut self, mut point: Point) -> Result<(Point, Derivatives), EarlyExit> {
         let size = point.x.amax();
         if size > 0.0 && !NEAR_ONE.contains(&size) {
-            let mut units = self.units();
-            units.length *= size;
-            self.set_units(&units);
+            self.set_units(&self.measured_by(size));
             point.x /= size;
         }
         self.gradient_norms.clear();

@@ -121,7 +121,10 @@ fn run(
     let saved = saved.filter(|s| s.is_of(point.f));
     match saved {
         Some(saved) => program.adopt_scaling(&saved.scaling, &mut point, &mut slopes),
-        None => program.scale(&mut point, &mut slopes),
+        None => {
+            program.measure_mixed(&mut point, &mut slopes);
+            program.scale(&mut point, &mut slopes);
+        }
     }
     let rest = DVector::zeros(point.c.len());
     let without_rows = ScaledMultipliers::from_rows(&program, &point, &slopes, rest);

@@ -175,6 +175,13 @@ impl Jacobian {
         }
     }
 
+    /// Multiplies each column by its factor.
+    pub(crate) fn scale_columns(&mut self, factors: &DVector<f64>) {
+        for (&i, v) in self.index.iter().zip(&mut self.value) {
+            *v *= factors[i];
+        }
+    }
+
     /// Whether each column has an entry that is not zero.
     pub(crate) fn touched(&self) -> Vec<bool> {
         let mut touched = vec![false; self.columns];
