@@ -285,7 +285,7 @@ pub(crate) fn unfinished(program: &Program<'_>, point: Point, slopes: Derivative
         multipliers,
         point,
         slopes,
-        barrier: options.initial_barrier,
+        barrier: options.first_barrier(),
         radius: options.initial_radius,
     }
 }

@@ -130,7 +130,7 @@ fn run(
     let without_rows = ScaledMultipliers::from_rows(&program, &point, &slopes, rest);
     let progress = Progress {
         optimality: scaled_residual(&program, &point, &slopes, &without_rows),
-        barrier: options.initial_barrier,
+        barrier: options.first_barrier(),
         phase: if options.method == Method::TrustRegion {
             Phase::Sqp
         } else {

@@ -94,7 +94,7 @@ fn fault_of_options(options: &Options) -> Option<String> {
         ("tolerance", options.tolerance),
         ("constraint_tolerance", options.constraint_tolerance),
         ("scaling_gradient", options.scaling_gradient),
-        ("initial_barrier", options.initial_barrier),
+        ("initial_barrier", options.first_barrier()),
         ("bound_push", options.bound_push),
         ("initial_radius", options.initial_radius),
     ];

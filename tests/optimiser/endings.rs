@@ -351,13 +351,14 @@ fn one_method_stands_in_where_the_other_runs_out() {
         let mut all = collected().into_iter();
         all.find(|p| p.name == "SPIRAL").expect("is coded")
     };
-    let within = |method| Options {
-        max_evaluations: 600,
+    let within = |method, max_evaluations| Options {
+        max_evaluations,
         ..with(method)
     };
-    let alone = solve(&mut spiral(), &within(Method::InteriorPoint), &mut Silent);
+    let alone = within(Method::InteriorPoint, 210);
+    let alone = solve(&mut spiral(), &alone, &mut Silent);
     assert!(!alone.converged(), "{:?}", alone.status);
-    let both = solve(&mut spiral(), &within(Method::Auto), &mut Silent);
+    let both = solve(&mut spiral(), &within(Method::Auto, 600), &mut Silent);
     assert!(both.converged(), "{:?}", both.status);
     assert_eq!(both.method, Method::TrustRegion);
     assert!(both.objective.abs() <= 1e-6, "{}", both.objective);

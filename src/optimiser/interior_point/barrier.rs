@@ -22,6 +22,8 @@ const FLOOR: f64 = 1e-5;
 pub(crate) struct BarrierRule {
     pub mu: f64,
     least: f64,
+    /// Whether the next iteration has the μ of the user.
+    given: bool,
     /// Whether μ is chosen anew at each iteration.
     free: bool,
     history: Vec<f64>,
@@ -30,7 +32,8 @@ pub(crate) struct BarrierRule {
 impl BarrierRule {
     pub(crate) fn new(options: &Options) -> BarrierRule {
         BarrierRule {
-            mu: options.initial_barrier,
+            mu: options.first_barrier(),
+            given: options.initial_barrier.is_some(),
             least: 1e-6 * options.tolerance,
             free: options.barrier == Barrier::Adaptive,
             history: Vec::new(),
@@ -53,6 +56,9 @@ impl BarrierRule {
         if at.products(layout).is_empty() {
             self.mu = self.least;
             return before != self.mu;
+        }
+        if std::mem::take(&mut self.given) {
+            return false;
         }
         if self.free {
             self.choose(at, layout, b);

@@ -18,6 +18,9 @@ use crate::optimiser::trust_region::steering::{Goal, IRREDUCIBLE, Model, TrustRe
 /// Share of the predicted reduction for which a step is accepted.
 const ACCEPT: f64 = 1e-4;
 
+/// The same share where no step is left.
+const STATIONARY: f64 = 1e-4;
+
 /// Number of successive steps whose predicted reduction may be less than rounding. Without this, steep
 /// starts end at the limit of iterations.
 const LOST_STEPS: usize = 4;
@@ -73,7 +76,7 @@ impl TrustRegion {
             }
             let Some(model) = self.solve_model(program) else {
                 if self.b.is_empty() && self.radius < 1e-6 {
-                    return Ok(self.end(program));
+                    return Ok(self.end(program, STATIONARY));
                 }
                 self.b.reset();
                 self.radius *= 0.1;
@@ -81,7 +84,7 @@ impl TrustRegion {
             };
             self.y.copy_from(&model.step.y);
             if model.irreducible
-                && let ending @ Status::Infeasible { .. } = self.end(program)
+                && let ending @ Status::Infeasible { .. } = self.end(program, IRREDUCIBLE)
             {
                 return Ok(ending);
             }
@@ -97,7 +100,7 @@ impl TrustRegion {
                 0
             };
             if model.predicted <= 0.0 || stays || lost > LOST_STEPS || self.radius < tiny {
-                return Ok(self.end(program));
+                return Ok(self.end(program, STATIONARY));
             }
             program.next_iteration()?;
             let (ratio, trials) = self.attempt(program, &model, refused)?;
@@ -153,8 +156,8 @@ impl TrustRegion {
     }
 
     /// Classifies a point without further steps. It is infeasible only if the linearised violation
-    /// cannot be reduced by more than a small share in a box of the size of the point.
-    fn end(&mut self, program: &mut Program<'_>) -> Status {
+    /// cannot be reduced by more than `share` in a box of the size of the point.
+    fn end(&mut self, program: &mut Program<'_>, share: f64) -> Status {
         if program.is_feasible(&self.point.c) {
             return Status::Stalled;
         }
@@ -167,7 +170,7 @@ impl TrustRegion {
         (self.radius, self.goal, self.penalty) = (radius, goal, kept);
         let now = program.total_violation(&c);
         match step {
-            Some(step) if now - self.linear_violation(program, &step.d) <= IRREDUCIBLE * now => {
+            Some(step) if now - self.linear_violation(program, &step.d) <= share * now => {
                 infeasible(program, &self.point)
             }
             _ => Status::Stalled,

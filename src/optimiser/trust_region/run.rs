@@ -55,7 +55,7 @@ fn finish_trust_region(program: &mut Program<'_>, mut method: TrustRegion) -> Fi
         point: method.point,
         slopes: method.slopes,
         b: method.b,
-        barrier: program.options.initial_barrier,
+        barrier: program.options.first_barrier(),
         radius: method.radius,
     }
     .judged(program)
