@@ -2,7 +2,6 @@
 
 use nalgebra::DVector;
 
-use crate::optimiser::convergence::{dominant_row, is_solved};
 use crate::optimiser::doubts::wrong_gradients;
 use crate::optimiser::ending::Status;
 use crate::optimiser::interior_point::barrier::BarrierRule;
@@ -22,14 +21,6 @@ const NEARLY_FEASIBLE: f64 = 1e-6;
 /// the quasi-Newton matrix misleads, or far from feasible points the filter.
 const SHORT_TRIALS: usize = 7;
 
-/// After so many evaluations within this distance, relative to the size of the point, a run ends.
-const MOST_TRIALS: usize = 120;
-const NEARBY: f64 = 1e-8;
-
-/// Successive points with a dominant row after which the program is degenerate. A run towards
-/// multipliers that exist leaves such points sooner.
-const LONGEST_DOMINANCE: usize = 5;
-
 /// How often entries may be stiffened in one iteration.
 const STIFFENINGS: usize = 8;
 
@@ -43,11 +34,11 @@ pub(crate) struct InteriorPoint {
     pub(crate) theta_small: f64,
     pub(crate) short_steps: usize,
     /// Successive points at which a row dominated.
-    dominated: usize,
+    pub(crate) dominated: usize,
     /// Whether the gradients were tested.
     doubted: bool,
     /// A point that the iteration has not left by more than `NEARBY`, and the evaluations before.
-    anchor: (DVector<f64>, usize),
+    pub(crate) anchor: (DVector<f64>, usize),
     /// Variables on which nothing has depended so far. They have no barrier, so they stay.
     idle: Vec<usize>,
 }
@@ -128,77 +119,33 @@ impl InteriorPoint {
         self.at.keep_multipliers_in_band(&self.layout, mu);
     }
 
-    /// Multipliers of the program at the present point.
-    pub(crate) fn multipliers(&self, program: &Program<'_>) -> ScaledMultipliers {
-        let n = self.layout.n;
-        let mut z = ScaledMultipliers {
-            y: self.at.y.clone(),
-            zl: self.at.zl.rows(0, n).into_owned(),
-            zu: self.at.zu.rows(0, n).into_owned(),
-        };
-        z.clip(program);
-        if self.is_gap_least() && self.gap() > self.allowed_gap(program) {
-            z.release(program, &self.at.point);
-        }
-        z
-    }
-
-    /// Sum of the products of multipliers and distances.
-    fn gap(&self) -> f64 {
-        self.at.products(&self.layout).iter().sum()
-    }
-
-    /// The gap that a solution may have.
-    fn allowed_gap(&self, program: &Program<'_>) -> f64 {
-        let least = program.unit_of_objective() * program.scaling.objective;
-        0.1 * program.options.tolerance * self.at.point.f.abs().max(least)
-    }
-
-    /// Whether the barrier cannot make the gap much smaller: it leaves about μ_min in each product
-    /// of a multiplier and its distance. Where the objective and its unit vanish, as after a start
-    /// that is stationary, no iteration reaches the allowed gap.
-    fn is_gap_least(&self) -> bool {
-        let pairs = self.at.products(&self.layout).len() as f64;
-        self.barrier.is_least() || self.gap() <= 4.0 * self.barrier.least() * pairs
-    }
-
-    /// Scaled residual of the optimality conditions.
-    pub(crate) fn optimality(&self) -> f64 {
-        self.at.residual(&self.layout, 0.0)
-    }
-
     /// Iterates until the run ends.
     pub(crate) fn run(&mut self, program: &mut Program<'_>) -> Status {
         self.iterate(program).unwrap_or_else(Status::from)
     }
 
+    /// Algorithm A of Wächter & Biegler (2006), step by step.
     fn iterate(&mut self, program: &mut Program<'_>) -> Result<Status, EarlyExit> {
         let mut failures = 0;
         loop {
+            // the tests of the whole problem.
             self.activate_bounds(program);
-            if self.is_solved(program) {
-                return Ok(Status::Converged);
+            if let Some(ending) = self.ending(program) {
+                return Ok(ending);
             }
-            if let Some(j) = self.degenerate(program) {
-                let constraint = program.constraint_name(j);
-                return Ok(Status::Degenerate { constraint });
-            }
-            if self.stays(program) {
-                return Ok(Status::Stalled);
-            }
-            if program.is_unbounded(&self.at.point) {
-                return Ok(Status::Unbounded);
-            }
+            // a new barrier parameter begins with an empty filter.
             let curvature = program.curvature(&self.at.point.x, &self.at.y)?;
             self.b.set_exact(curvature);
             if self.barrier.update(&self.at, &self.layout, &mut self.b) {
                 self.filter.clear();
             }
+            // the search direction.
             program.next_iteration()?;
             let tau = (1.0 - self.barrier.mu).max(0.99);
             let Some((system, direction)) = self.direction(tau) else {
                 return Ok(Status::Stalled);
             };
+            // the line search, which augments the filter.
             let dual = direction.dual_limit(&self.at, tau);
             let search = LineSearch {
                 layout: &self.layout,
@@ -209,6 +156,7 @@ impl InteriorPoint {
                 theta_small: self.theta_small,
             };
             match search.run(program, &mut self.b, &mut self.filter, direction)? {
+                // the accepted point.
                 Some(accepted) => {
                     failures = 0;
                     self.step(program, accepted, dual, system.regularisation())?;
@@ -218,6 +166,7 @@ impl InteriorPoint {
                         return Ok(ending);
                     }
                 }
+                // restoration of feasibility.
                 None => {
                     failures += 1;
                     if let Some(ending) = self.recover(program, failures)? {
@@ -226,29 +175,6 @@ impl InteriorPoint {
                 }
             }
         }
-    }
-
-    /// The row without which no multipliers exist: it dominates at `LONGEST_DOMINANCE` successive
-    /// points that solve the program beside the size of their multipliers, but not otherwise.
-    fn degenerate(&mut self, program: &Program<'_>) -> Option<usize> {
-        let solves =
-            self.optimality() <= program.options.tolerance && program.is_feasible(&self.at.point.c);
-        let z = self.multipliers(program);
-        let dominant = dominant_row(program, &self.at.slopes, &z).filter(|_| solves);
-        self.dominated = dominant.map_or(0, |_| self.dominated + 1);
-        dominant.filter(|_| self.dominated > LONGEST_DOMINANCE)
-    }
-
-    /// Whether the point has stayed in one place for many evaluations.
-    fn stays(&mut self, program: &Program<'_>) -> bool {
-        let (anchor, before) = &self.anchor;
-        let now = program.counts.evaluations;
-        let x = &self.at.point.x;
-        if (x - anchor).amax() > NEARBY * x.amax().max(1.0) {
-            self.anchor = (x.clone(), now);
-            return false;
-        }
-        now - before > MOST_TRIALS
     }
 
     /// Adds barriers for the idle variables on which something depends at this point.
@@ -376,16 +302,5 @@ impl InteriorPoint {
             Some(what) => Err(EarlyExit::Halt(Status::Inconsistent { what })),
             None => Ok(()),
         }
-    }
-
-    fn is_solved(&self, program: &Program<'_>) -> bool {
-        let scaled = self.optimality();
-        let is_wide = !self.is_gap_least() && self.gap() > self.allowed_gap(program);
-        if scaled > program.options.tolerance || is_wide {
-            return false;
-        }
-        let z = self.multipliers(program);
-        let (point, slopes) = (&self.at.point, &self.at.slopes);
-        is_solved(program, point, slopes, &z, scaled)
     }
 }
