@@ -10,7 +10,8 @@ use crate::optimiser::multipliers::{ScaledMultipliers, least_squares};
 use crate::optimiser::outcome::Kkt;
 use crate::optimiser::program::{Derivatives, Point, Program};
 
-/// Unit of forces where the gradient vanishes, as a part of the typical gradient.
+/// Unit of forces where the gradient vanishes, as a part of the typical gradient. Ten times more or less
+/// changes the count of solved problems by at most one.
 const UNIT: f64 = 0.1;
 
 /// Size of forces, in the units of the user: that of the gradient or, if it vanishes, of the

@@ -8,7 +8,8 @@ use crate::optimiser::ending::Status;
 use crate::optimiser::multipliers::{ScaledMultipliers, user_multipliers};
 use crate::optimiser::program::{Derivatives, FAR, Point, Program};
 
-/// How often the distance of a doubtful solution from the first point is doubled.
+/// How often the distance of a doubtful solution from the first point is doubled. With two, three outcomes
+/// of the bed change.
 const DOUBLINGS: i32 = 6;
 
 /// A solution very far from the first point becomes [`Status::Unbounded`] if the objective falls on

@@ -11,7 +11,8 @@ use crate::optimiser::linear::curvature::Curvature;
 use crate::optimiser::program::{Derivatives, EarlyExit, Point, Program};
 use crate::optimiser::state::Scaling;
 
-/// Largest factor of a function. A gradient that is smaller by this factor is rounding.
+/// Largest factor of a function. A gradient that is smaller by this factor is rounding. Without
+/// a limit two problems of the bed are lost, whose least value is zero.
 const LARGEST_LIFT: f64 = 1e12;
 
 /// A restart keeps the units of the variables if the size of the point is between these. Always to
@@ -22,10 +23,12 @@ const NEAR_ONE: RangeInclusive<f64> = 1e-3..=1e3;
 /// start would lead nowhere. Without this a plateau is left only at the limit of evaluations.
 const FLAT_ROW: f64 = 1e4;
 
-/// A start below this part of the largest may be in another unit.
+/// A start below this part of the largest may be in another unit. Without this, variables in units from
+/// 1e-6 to 1e6 stall.
 const MIXED: f64 = 1e-3;
 
-/// Number of largest gradients of a run that are ignored.
+/// Number of largest gradients of a run that are ignored: those of a start on a cliff. With none the bed
+/// takes 4 % less, and such a start loosens the conditions.
 const LARGEST_LEFT_OUT: usize = 2;
 
 /// Units of a scaled program.
@@ -277,5 +280,6 @@ impl Program<'_> {
     }
 }
 
-/// Unit of a vanishing objective, as a part of the typical gradient times one unit.
+/// Unit of a vanishing objective, as a part of the typical gradient times one unit. Ten times more makes
+/// a false claim.
 const UNIT_OF_OBJECTIVE: f64 = 0.01;

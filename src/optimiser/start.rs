@@ -14,7 +14,8 @@ const REACHES: [f64; 7] = [0.2, 1.0, 5.0, 0.5, 50.0, 500.0, 1e-3];
 /// A nearby violation is unchanged if it differs by less than this part.
 const UNCHANGED: f64 = 1e-6;
 
-/// Distance, relative to the size of a start, at which a start that seems solved is doubted.
+/// Distance, relative to the size of a start, at which a start that seems solved is doubted. Without this, a
+/// maximum is called solved.
 const ASIDE: f64 = 1e-2;
 
 /// Evaluates the start, moved into the interior of the bounds, or points near it.

@@ -4,7 +4,8 @@ use serde::{Deserialize, Serialize};
 
 use crate::optimiser::linear::quasi_newton::QuasiNewton;
 
-/// Two values of one objective at almost the same point differ by less than this, relatively.
+/// Two values of one objective at almost the same point differ by less than this, relatively. Ten times
+/// more or less is the same.
 const SAME: f64 = 1e-6;
 
 /// Lagrange multipliers in the units of the user.

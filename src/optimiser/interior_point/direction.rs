@@ -6,7 +6,7 @@ use crate::optimiser::interior_point::iterate::{Iterate, Layout};
 use crate::optimiser::linear::kkt_system::KktSystem;
 use crate::optimiser::linear::quasi_newton::QuasiNewton;
 
-/// Largest Σ of a slack that counts as far from its bounds.
+/// Largest Σ of a slack that counts as far from its bounds. Slacks by their force alone cost 1 to 2 %.
 const FAR: f64 = 1e-8;
 
 /// An entry overshoots its bound if this share of its step reaches the bound. It then gets a

@@ -1,7 +1,8 @@
 //! The tests that a line search puts to a point: progress from the last point, and the filter, pairs
 //! of infeasibility and merit that must not be dominated.
 
-/// Share of the infeasibility by which a step must improve on a filter entry.
+/// Share of the infeasibility by which a step must improve on a filter entry (Wächter & Biegler 2006, as all
+/// constants of the filter).
 pub(crate) const MARGIN: f64 = 1e-5;
 
 /// Least share of the predicted decrease of φ.

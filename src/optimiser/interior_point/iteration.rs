@@ -14,14 +14,17 @@ use crate::optimiser::multipliers::ScaledMultipliers;
 use crate::optimiser::observer::Phase;
 use crate::optimiser::program::{Derivatives, EarlyExit, Point, Program, Progress};
 
-/// Infeasibility below which multipliers of rows are recomputed by least squares.
+/// Infeasibility below which multipliers of rows are recomputed by least squares. Never to do so costs
+/// 3 % and makes a false claim, always to do so loses three problems of the bed.
 const NEARLY_FEASIBLE: f64 = 1e-6;
 
 /// A step that took more trials than this counts as short. Two short steps in succession show that
-/// the quasi-Newton matrix misleads, or far from feasible points the filter.
+/// the quasi-Newton matrix misleads, or four far from feasible points the filter. Without this, two
+/// problems of the bed are lost; with five trials it takes 1 % more.
 const SHORT_TRIALS: usize = 7;
 
-/// How often entries may be stiffened in one iteration.
+/// How often entries may be stiffened in one iteration. With one time, trusses take twice the
+/// evaluations; more than eight do not occur but in vain.
 const STIFFENINGS: usize = 8;
 
 /// State of the iteration.

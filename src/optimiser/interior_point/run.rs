@@ -11,7 +11,7 @@ use crate::optimiser::program::{Derivatives, Point, Program};
 use crate::optimiser::renewal::renewed;
 use crate::optimiser::state::SavedState;
 
-/// Least relative distance of the start of a resumed run from a bound.
+/// Least relative distance of the start of a resumed run from a bound: so near that it stays where it was.
 pub(crate) const RESUMED_PUSH: f64 = 1e-10;
 
 /// Larger multipliers may hide finite ones at the same point, which are fitted then. Without this,

@@ -6,6 +6,7 @@ use crate::optimiser::linear::jacobian::Jacobian;
 use crate::optimiser::linear::quasi_newton::QuasiNewton;
 
 /// Relative size of a pivot of the Schur complement below which rows count as dependent.
+/// A tenth makes a false claim.
 const DEPENDENT: f64 = 1e-14;
 
 /// Factors by the Schur complement S = A H⁻¹ Aᵀ + D with H = B + Σ. If there are more inequality

@@ -11,7 +11,7 @@ use crate::optimiser::linear::kkt_sparse::SparseKkt;
 use crate::optimiser::linear::quasi_newton::QuasiNewton;
 
 /// Residual, relative to the right-hand side, at which refinement ends, and the largest number of
-/// refinements.
+/// refinements. Two instead of five cost 2 % of the evaluations.
 const EXACT: f64 = 1e-13;
 const REFINEMENTS: usize = 5;
 
