@@ -4,9 +4,9 @@
 use nalgebra::DVector;
 
 use crate::optimiser::ending::FinalIterate;
-use crate::optimiser::ending::Status;
 use crate::optimiser::multipliers::{ScaledMultipliers, user_multipliers};
 use crate::optimiser::program::{Derivatives, FAR, Point, Program};
+use crate::optimiser::status::Status;
 
 /// How often the distance of a doubtful solution from the first point is doubled. With two, three outcomes
 /// of the bed change.
@@ -170,17 +170,17 @@ pub(crate) fn wrong_gradients(
         };
         differences.push([ahead, behind]);
     }
-    let disagrees = |value: &dyn Fn(&Point) -> f64, slope: f64, gradient: f64| {
+    let disagrees = |value: &dyn Fn(&Point) -> f64, of: f64, slope: f64, gradient: f64| {
         let here = value(at);
-        let of = |k: usize| {
+        let difference = |k: usize| {
             let (length, [ahead, behind]) = (STEPS[k] * size, &differences[k]);
             let (ahead, behind) = (value(ahead), value(behind));
             let bend = (ahead - here) - (here - behind);
             (0.5 * (ahead - behind) / length, (bend / length).abs())
         };
-        let ((coarse, coarse_bend), (fine, fine_bend)) = (of(0), of(1));
+        let ((coarse, coarse_bend), (fine, fine_bend)) = (difference(0), difference(1));
         let gap = (fine - slope).abs();
-        let rounding = 1e3 * f64::EPSILON * here.abs() / (STEPS[1] * size);
+        let rounding = 1e3 * f64::EPSILON * here.abs().max(of) / (STEPS[1] * size);
         let least = (AGREE * fine.abs().max(slope.abs())).max(OF_GRADIENT * gradient);
         let wrong = gap > least && gap > rounding;
         let smooth = fine_bend <= 0.5 * coarse_bend + rounding;
@@ -188,7 +188,7 @@ pub(crate) fn wrong_gradients(
     };
     let unit = program.scaling.objective;
     let slope = slopes.g.dot(&direction);
-    let objective = disagrees(&|p| p.f, slope, slopes.g.amax())
+    let objective = disagrees(&|p| p.f, 0.0, slope, slopes.g.amax())
         .map(|fine| ("the objective".into(), slope / unit, fine / unit));
     let row = |k: usize| {
         let j = program.rows[k];
@@ -196,7 +196,13 @@ pub(crate) fn wrong_gradients(
             program.scaling.constraints[j],
             slopes.a.row_dot(k, &direction),
         );
-        let fine = disagrees(&|p| p.c[k], slope, slopes.a.row_amax(k))?;
+        // A row that vanishes has the rounding of what it is compared with.
+        let bounds = [program.row_lower[k].abs(), program.row_upper[k].abs()];
+        let of = bounds
+            .into_iter()
+            .filter(|b| b.is_finite())
+            .fold(0.0, f64::max);
+        let fine = disagrees(&|p| p.c[k], of, slope, slopes.a.row_amax(k))?;
         Some((program.constraint_name(j), slope / unit, fine / unit))
     };
     let found = objective.or_else(|| (0..program.rows.len()).find_map(row));

@@ -6,7 +6,6 @@ use std::time::Instant;
 
 use nalgebra::DVector;
 
-use crate::optimiser::ending::Status;
 use crate::optimiser::linear::jacobian::Jacobian;
 use crate::optimiser::nlp::{
     Evaluation, EvaluationFailure, Gradients, fault_of_evaluation, fault_of_gradients,
@@ -14,6 +13,7 @@ use crate::optimiser::nlp::{
 };
 use crate::optimiser::outcome::FailedDesign;
 use crate::optimiser::program::{Derivatives, EarlyExit, Point, Program};
+use crate::optimiser::status::Status;
 
 /// Largest number of recorded designs with a failed evaluation.
 const FAILED_DESIGNS_KEPT: usize = 100;

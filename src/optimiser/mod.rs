@@ -26,11 +26,11 @@ mod scaling;
 mod solve;
 mod start;
 mod state;
+mod status;
 mod trust_region;
 mod well_posed;
 
 pub use derivatives::{DerivativeError, derivative_errors};
-pub use ending::Status;
 pub use functions::Functions;
 pub use linear::curvature::Curvature;
 pub use linear::jacobian::Jacobian;
@@ -41,6 +41,7 @@ pub use options::{Barrier, Method, Options};
 pub use outcome::{ActiveBound, BoundSide, Counts, FailedDesign, Kkt, Outcome};
 pub use solve::{resume, solve};
 pub use state::{Multipliers, SavedState, Scaling};
+pub use status::Status;
 
 #[cfg(test)]
 pub(crate) use interior_point::filter::{Filter, Measure};

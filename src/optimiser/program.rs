@@ -5,13 +5,13 @@ use std::time::Instant;
 
 use nalgebra::DVector;
 
-use crate::optimiser::ending::Status;
 use crate::optimiser::linear::jacobian::Jacobian;
 use crate::optimiser::nlp::{EvaluationFailure, Nlp};
 use crate::optimiser::observer::{Observer, Phase, Row};
 use crate::optimiser::options::{Method, Options};
 use crate::optimiser::outcome::{Counts, FailedDesign};
 use crate::optimiser::state::Scaling;
+use crate::optimiser::status::Status;
 
 /// Distance from the first point, relative to its size. Beyond it a fall in scaled units shows an
 /// unbounded objective, and a solution is doubted: without that, three claims of the bed are false.
@@ -53,6 +53,15 @@ pub(crate) enum EarlyExit {
     Failed(EvaluationFailure),
     /// The run must end.
     Halt(Status),
+}
+
+impl From<EarlyExit> for Status {
+    fn from(exit: EarlyExit) -> Status {
+        match exit {
+            EarlyExit::Failed(_) => Status::Stalled,
+            EarlyExit::Halt(status) => status,
+        }
+    }
 }
 
 /// The data of an iteration besides its point.

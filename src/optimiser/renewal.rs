@@ -2,8 +2,8 @@
 
 use crate::optimiser::doubts::degenerate_row;
 use crate::optimiser::ending::FinalIterate;
-use crate::optimiser::ending::Status;
 use crate::optimiser::program::{Derivatives, Point, Program};
+use crate::optimiser::status::Status;
 
 /// Restarts from a feasible point where `finish` stalled. The restart has new units, an empty
 /// quasi-Newton matrix and no earlier derivatives. It is repeated as long as the objective

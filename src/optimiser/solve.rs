@@ -4,7 +4,7 @@ use nalgebra::DVector;
 
 use crate::optimiser::convergence::scaled_residual;
 use crate::optimiser::doubts::{doubted, wrong_gradients};
-use crate::optimiser::ending::{FinalIterate, Status, best_of, unfinished, without_freedom};
+use crate::optimiser::ending::{FinalIterate, best_of, unfinished, without_freedom};
 use crate::optimiser::interior_point::run::{RESUMED_PUSH, interior_point};
 use crate::optimiser::least_violation::least_violation;
 use crate::optimiser::multipliers::ScaledMultipliers;
@@ -16,6 +16,7 @@ use crate::optimiser::program::{Derivatives, EarlyExit, Point, Program, Progress
 use crate::optimiser::report::{outcome, state_of, untried, without_values};
 use crate::optimiser::start::{Neighbourhood, first_point, left_start, look_around};
 use crate::optimiser::state::SavedState;
+use crate::optimiser::status::Status;
 use crate::optimiser::trust_region::run::trust_region;
 use crate::optimiser::well_posed;
 

@@ -3,7 +3,6 @@
 use nalgebra::DVector;
 
 use crate::optimiser::doubts::wrong_gradients;
-use crate::optimiser::ending::Status;
 use crate::optimiser::interior_point::barrier::BarrierRule;
 use crate::optimiser::interior_point::direction::{Direction, NewtonSystem};
 use crate::optimiser::interior_point::filter::Filter;
@@ -13,6 +12,7 @@ use crate::optimiser::linear::quasi_newton::QuasiNewton;
 use crate::optimiser::multipliers::ScaledMultipliers;
 use crate::optimiser::observer::Phase;
 use crate::optimiser::program::{Derivatives, EarlyExit, Point, Program, Progress};
+use crate::optimiser::status::Status;
 
 /// Infeasibility below which multipliers of rows are recomputed by least squares. Never to do so costs
 /// 3 % and makes a false claim, always to do so loses three problems of the bed.

@@ -2,11 +2,11 @@
 
 use nalgebra::DVector;
 
-use crate::optimiser::ending::Status;
 use crate::optimiser::interior_point::iterate::Layout;
 use crate::optimiser::interior_point::iteration::InteriorPoint;
 use crate::optimiser::interior_point::line_search::infeasibility;
 use crate::optimiser::program::{EarlyExit, Point, Program};
+use crate::optimiser::status::Status;
 use crate::optimiser::trust_region::steering::{Goal, TrustRegion};
 
 impl InteriorPoint {

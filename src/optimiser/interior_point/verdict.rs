@@ -1,19 +1,15 @@
 //! The tests of the whole problem at a point of the interior point.
 
-use crate::optimiser::convergence::{dominant_row, is_solved};
-use crate::optimiser::ending::Status;
+use crate::optimiser::convergence::{LONGEST_DOMINANCE, dominant_row, is_solved};
 use crate::optimiser::interior_point::iteration::InteriorPoint;
 use crate::optimiser::multipliers::ScaledMultipliers;
 use crate::optimiser::program::Program;
+use crate::optimiser::status::Status;
 
 /// After so many evaluations within this distance, relative to the size of the point, a run ends. Without
 /// this, x² ≤ 0 takes 2813 evaluations (608), and far starts end at a limit.
 const MOST_TRIALS: usize = 120;
 const NEARBY: f64 = 1e-8;
-
-/// Successive points with a dominant row after which the program is degenerate. A run towards
-/// multipliers that exist leaves such points sooner.
-const LONGEST_DOMINANCE: usize = 5;
 
 impl InteriorPoint {
     /// How the run ends at this point, if it does.

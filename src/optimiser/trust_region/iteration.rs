@@ -6,13 +6,14 @@
 
 use nalgebra::DVector;
 
-use crate::optimiser::convergence::{is_solved, scaled_residual};
-use crate::optimiser::ending::{Status, infeasible};
+use crate::optimiser::convergence::{LONGEST_DOMINANCE, dominant_row, is_solved, scaled_residual};
+use crate::optimiser::ending::infeasible;
 use crate::optimiser::linear::quasi_newton::QuasiNewton;
 use crate::optimiser::multipliers::ScaledMultipliers;
 use crate::optimiser::observer::Phase;
 use crate::optimiser::program::{Derivatives, EarlyExit, Point, Program, Progress};
 use crate::optimiser::quadratic::elastic::ElasticQp;
+use crate::optimiser::status::Status;
 use crate::optimiser::trust_region::steering::{Goal, IRREDUCIBLE, Model, TrustRegion};
 
 /// Share of the predicted reduction for which a step is accepted.
@@ -48,6 +49,7 @@ impl TrustRegion {
             radius: options.initial_radius * point_size,
             goal,
             penalty: DVector::from_element(m, 1.0),
+            dominated: 0,
         }
     }
 
@@ -88,8 +90,8 @@ impl TrustRegion {
             {
                 return Ok(ending);
             }
-            if self.is_solved(program) {
-                return Ok(Status::Converged);
+            if let Some(ending) = self.ending(program) {
+                return Ok(ending);
             }
             let size = model.step.d.amax();
             let stays = self.inside(program, &model.step.d) == self.point.x;
@@ -149,8 +151,8 @@ impl TrustRegion {
             if ratio > ACCEPT && reached(program, &self.point) {
                 return Ok(Status::Converged);
             }
-            if self.is_solved(program) {
-                return Ok(Status::Converged);
+            if let Some(ending) = self.ending(program) {
+                return Ok(ending);
             }
         }
     }
@@ -183,14 +185,22 @@ impl TrustRegion {
         scaled_residual(program, &self.point, &self.slopes, &z)
     }
 
-    /// Whether the run may end here.
-    fn is_solved(&self, program: &Program<'_>) -> bool {
+    /// How the run ends at this point, if it does.
+    fn ending(&mut self, program: &Program<'_>) -> Option<Status> {
         if self.goal == Goal::Feasibility {
-            return false;
+            return None;
         }
         let z = self.multipliers(program);
         let scaled = scaled_residual(program, &self.point, &self.slopes, &z);
-        is_solved(program, &self.point, &self.slopes, &z, scaled)
+        if is_solved(program, &self.point, &self.slopes, &z, scaled) {
+            return Some(Status::Converged);
+        }
+        let dominant =
+            dominant_row(program, &self.slopes, &z).filter(|_| program.is_feasible(&self.point.c));
+        self.dominated = dominant.map_or(0, |_| self.dominated + 1);
+        let constraint = program.constraint_name(dominant?);
+        // Each point is tested twice, and each step halves the distance at most.
+        (self.dominated > 4 * LONGEST_DOMINANCE).then_some(Status::Degenerate { constraint })
     }
 
     /// Exact penalty function w f + Σ ν_j violation_j.

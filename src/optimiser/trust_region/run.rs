@@ -1,11 +1,12 @@
 //! A run of the trust region: phases without the objective, and its final iterate.
 
-use crate::optimiser::ending::{FinalIterate, Status};
+use crate::optimiser::ending::FinalIterate;
 use crate::optimiser::multipliers::scaled_multipliers;
 use crate::optimiser::options::Method;
 use crate::optimiser::program::{Derivatives, Point, Program};
 use crate::optimiser::renewal::renewed;
 use crate::optimiser::state::SavedState;
+use crate::optimiser::status::Status;
 use crate::optimiser::trust_region::steering::{Goal, TrustRegion};
 
 pub(crate) fn trust_region(

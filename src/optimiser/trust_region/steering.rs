@@ -34,6 +34,8 @@ pub(crate) struct TrustRegion {
     pub radius: f64,
     pub(crate) goal: Goal,
     pub(crate) penalty: DVector<f64>,
+    /// Successive tests at which a row dominated.
+    pub(crate) dominated: usize,
     pub(crate) qp: ElasticQp,
 }
 
