@@ -1,7 +1,7 @@
 //! When a run has converged: residuals of the optimality conditions, and the tests on them.
 //!
-//! [`judge`] tests a point on the way, [`is_solved_at_end`] one without further progress,
-//! [`is_at_precision`] one whose steps are lost in rounding. How a run ended is in `ending`.
+//! [`is_solved`] tests a point, [`is_at_precision`] one whose steps are lost in rounding. How a run
+//! ended is in `ending`.
 
 use nalgebra::DVector;
 
@@ -10,7 +10,8 @@ use crate::optimiser::multipliers::{ScaledMultipliers, least_squares};
 use crate::optimiser::outcome::Kkt;
 use crate::optimiser::program::{Derivatives, Point, Program};
 
-/// Unit of forces where the gradient vanishes, as a part of the typical gradient.
+/// Unit of forces where the gradient vanishes, as a part of the typical gradient. Ten times more or less
+/// changes the count of solved problems by at most one.
 const UNIT: f64 = 0.1;
 
 /// Size of forces, in the units of the user: that of the gradient or, if it vanishes, of the
@@ -25,6 +26,26 @@ pub(crate) fn gradient_norm(program: &Program<'_>, slopes: &Derivatives) -> f64 
     gradient
         .map(|(&i, g)| (g / program.unit_of_force(i)).abs())
         .fold(0.0, f64::max)
+}
+
+/// Successive points with a dominant row after which the program is degenerate. A run towards
+/// multipliers that exist leaves such points sooner. Without this end the bed takes 16 % more evaluations.
+pub(crate) const LONGEST_DOMINANCE: usize = 5;
+
+/// The row whose force |y_k| ‖∇c_k‖∞ is largest, if that exceeds the gradient by 1/√tolerance and other
+/// forces balance it to the tolerance. Beside it the objective does not count: at the limit of such
+/// points no multipliers exist (conditions of Fritz John).
+pub(crate) fn dominant_row(
+    program: &Program<'_>,
+    slopes: &Derivatives,
+    z: &ScaledMultipliers,
+) -> Option<usize> {
+    let force = |k: usize| z.y[k].abs() * slopes.a.row_amax(k);
+    let k = (0..z.y.len()).max_by(|&a, &b| force(a).total_cmp(&force(b)))?;
+    let tolerance = program.options.tolerance;
+    let left = &slopes.g + slopes.a.tr_mul(&z.y) - &z.zl + &z.zu;
+    let dominates = force(k) > slopes.g.amax() / tolerance.sqrt();
+    (dominates && left.amax() <= tolerance * force(k)).then(|| program.rows[k])
 }
 
 /// Residuals at a point. The caller sets `scaled`.
@@ -144,50 +165,6 @@ impl ScaledMultipliers {
     }
 }
 
-/// A gradient below the first part of the typical gradient counts as vanishing. A remaining force
-/// up to the second part of the gradient shows that multipliers balance it.
-const VANISHING: f64 = 1e-5;
-const BALANCED: f64 = 0.1;
-
-/// A change of x by this number of rounding errors changes its last digits only.
-const LAST_DIGITS: f64 = 10.0;
-
-/// Judgement of the residuals at a point.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub(crate) enum Verdict {
-    /// They are too large.
-    Unsolved,
-    /// They are small only in scaled units and relative to the gradients of the run.
-    SolvedInScaledUnits,
-    /// They meet the tolerances in the units of the user as well.
-    Solved,
-}
-
-/// Judges a point. It is unsolved if multipliers balance a gradient that does not vanish, but the
-/// remaining force is not small relative to this gradient.
-pub(crate) fn judge(
-    program: &Program<'_>,
-    point: &Point,
-    slopes: &Derivatives,
-    z: &ScaledMultipliers,
-    scaled: f64,
-) -> Verdict {
-    let force = &slopes.g + slopes.a.tr_mul(&z.y) - &z.zl + &z.zu;
-    let (left, gradient) = (force.amax(), slopes.g.amax());
-    let typical = program.typical_gradient() * program.scaling.objective;
-    let balanced = left > program.options.tolerance * gradient
-        && left <= BALANCED * gradient
-        && gradient > VANISHING * typical;
-    let kkt = kkt(program, point, slopes, z, scaled);
-    if balanced || !is_solved_in_scaled_units(program, point, &kkt) {
-        Verdict::Unsolved
-    } else if is_solved_in_user_units(program, point, slopes, &kkt) {
-        Verdict::Solved
-    } else {
-        Verdict::SolvedInScaledUnits
-    }
-}
-
 /// Whether the residuals meet the tolerances in scaled units and relative to the gradients of the
 /// run.
 pub(crate) fn is_solved_in_scaled_units(program: &Program<'_>, point: &Point, kkt: &Kkt) -> bool {
@@ -215,9 +192,7 @@ pub(crate) fn is_solved_in_user_units(
 }
 
 /// Whether the objective can show no further gain: the residuals meet the tolerances relative to
-/// the gradients of the run and the step −B⁻¹∇L gains less than the rounding of f; or they meet them
-/// in the units of the user and the step changes only the last digits of x. A run that starts at its
-/// solution has no gradients to compare with.
+/// the gradients of the run, and the step −B⁻¹∇L gains less than the rounding of f.
 pub(crate) fn is_at_precision(
     program: &Program<'_>,
     point: &Point,
@@ -226,19 +201,19 @@ pub(crate) fn is_at_precision(
     b: &mut QuasiNewton,
 ) -> bool {
     let kkt = kkt(program, point, slopes, z, 0.0);
-    let relative = is_solved_in_scaled_units(program, point, &kkt);
-    if !relative && !is_solved_in_user_units(program, point, slopes, &kkt) {
+    // The unit of a vanishing objective says nothing where f has digits.
+    let gap = kkt.complementarity * program.scaling.objective;
+    let closed = gap <= program.options.tolerance * point.f.abs();
+    if !closed || !is_solved_in_scaled_units(program, point, &kkt) {
         return false;
     }
     let force = &slopes.g + slopes.a.tr_mul(&z.y) - &z.zl + &z.zu;
-    b.newton_step(&force).is_some_and(|step| {
-        relative && 0.5 * step.dot(&force) <= f64::EPSILON * point.f.abs()
-            || step.amax() <= LAST_DIGITS * f64::EPSILON * point.x.amax()
-    })
+    let step = b.newton_step(&force);
+    step.is_some_and(|step| 0.5 * step.dot(&force) <= f64::EPSILON * point.f.abs())
 }
 
-/// Whether [`judge`] gives [`Verdict::Solved`], at a point where no step makes progress.
-pub(crate) fn is_solved_at_end(
+/// Whether the residuals meet all tolerances.
+pub(crate) fn is_solved(
     program: &Program<'_>,
     point: &Point,
     slopes: &Derivatives,

@@ -3,14 +3,13 @@
 
 use nalgebra::DVector;
 
-use crate::optimiser::ending::{Claim, FinalIterate};
+use crate::optimiser::ending::FinalIterate;
 use crate::optimiser::multipliers::{ScaledMultipliers, user_multipliers};
-use crate::optimiser::outcome::Status;
-use crate::optimiser::program::{Derivatives, Point, Program};
+use crate::optimiser::program::{Derivatives, FAR, Point, Program};
+use crate::optimiser::status::Status;
 
-/// Distance from the first point, relative to its size, beyond which a solution is doubted, and how
-/// often this distance is then doubled.
-const DOUBTFUL: f64 = 1e4;
+/// How often the distance of a doubtful solution from the first point is doubled. With two, three outcomes
+/// of the bed change.
 const DOUBLINGS: i32 = 6;
 
 /// A solution very far from the first point becomes [`Status::Unbounded`] if the objective falls on
@@ -21,14 +20,13 @@ fn unless_it_falls(program: &mut Program<'_>, mut finish: FinalIterate) -> Final
     };
     let mut way = &finish.point.x - &first;
     let length = way.amax();
-    let doubtful = length > DOUBTFUL * first.amax().max(1.0);
-    let solved = finish.status == Status::Converged || finish.is_solved(program);
-    if !doubtful || !solved {
+    let doubtful = length > FAR * first.amax().max(1.0);
+    if !doubtful || finish.status != Status::Converged {
         return finish;
     }
     // Only the variables that went far go on.
     way.iter_mut()
-        .filter(|v| v.abs() <= length / DOUBTFUL)
+        .filter(|v| v.abs() <= length / FAR)
         .for_each(|v| *v = 0.0);
     let unit = finish.point.f.abs().max(program.scaling.objective);
     let mut least = program.options.tolerance * unit;
@@ -60,8 +58,8 @@ const NEARBY: f64 = 1e-6;
 /// Share of a derivative by which it must differ from a difference to be doubted.
 const DOUBTED: f64 = 0.5;
 
-/// Change of the objective by a violation within the tolerance, relative to max(1, |f|), from which
-/// the multiplier of a row counts as huge.
+/// Change of the objective by a violation within the tolerance, relative to |f| or its unit, from
+/// which the multiplier of a row counts as huge.
 const HUGE: f64 = 1e-3;
 
 /// The row without which no multipliers exist: its multiplier is huge, and its derivative changes
@@ -77,7 +75,8 @@ pub(crate) fn degenerate_row(
     let rows = 0..program.rows.len();
     let steep = |k: &usize| y[program.rows[*k]].abs();
     let k = rows.max_by(|a, b| steep(a).total_cmp(&steep(b)))?;
-    let f = (point.f / program.scaling.objective).abs().max(1.0);
+    let f = (point.f / program.scaling.objective).abs();
+    let f = f.max(program.unit_of_objective());
     if steep(&k) * program.options.constraint_tolerance <= HUGE * f {
         return None;
     }
@@ -104,12 +103,11 @@ pub(crate) fn degenerate_row(
 
 /// No solution has a degenerate row.
 fn unless_multipliers_fail(program: &mut Program<'_>, mut finish: FinalIterate) -> FinalIterate {
-    if !(finish.status == Status::Converged || finish.is_solved(program)) {
+    if finish.status != Status::Converged {
         return finish;
     }
     let (point, slopes) = (&finish.point, &finish.slopes);
     if let Some(j) = degenerate_row(program, point, slopes, &finish.multipliers) {
-        finish.claim = Claim::Refuted;
         finish.status = Status::Degenerate {
             constraint: program.constraint_name(j),
         };
@@ -134,7 +132,7 @@ fn unless_gradients_are_wrong(program: &mut Program<'_>, mut finish: FinalIterat
         finish.status,
         Status::Stalled | Status::AtPrecision | Status::Infeasible { .. }
     );
-    if !undecided || finish.claim == Claim::Refuted || finish.is_solved(program) {
+    if !undecided {
         return finish;
     }
     if let Some(what) = wrong_gradients(program, &finish.point, &finish.slopes) {
@@ -172,17 +170,17 @@ pub(crate) fn wrong_gradients(
         };
         differences.push([ahead, behind]);
     }
-    let disagrees = |value: &dyn Fn(&Point) -> f64, slope: f64, gradient: f64| {
+    let disagrees = |value: &dyn Fn(&Point) -> f64, of: f64, slope: f64, gradient: f64| {
         let here = value(at);
-        let of = |k: usize| {
+        let difference = |k: usize| {
             let (length, [ahead, behind]) = (STEPS[k] * size, &differences[k]);
             let (ahead, behind) = (value(ahead), value(behind));
             let bend = (ahead - here) - (here - behind);
             (0.5 * (ahead - behind) / length, (bend / length).abs())
         };
-        let ((coarse, coarse_bend), (fine, fine_bend)) = (of(0), of(1));
+        let ((coarse, coarse_bend), (fine, fine_bend)) = (difference(0), difference(1));
         let gap = (fine - slope).abs();
-        let rounding = 1e3 * f64::EPSILON * here.abs() / (STEPS[1] * size);
+        let rounding = 1e3 * f64::EPSILON * here.abs().max(of) / (STEPS[1] * size);
         let least = (AGREE * fine.abs().max(slope.abs())).max(OF_GRADIENT * gradient);
         let wrong = gap > least && gap > rounding;
         let smooth = fine_bend <= 0.5 * coarse_bend + rounding;
@@ -190,7 +188,7 @@ pub(crate) fn wrong_gradients(
     };
     let unit = program.scaling.objective;
     let slope = slopes.g.dot(&direction);
-    let objective = disagrees(&|p| p.f, slope, slopes.g.amax())
+    let objective = disagrees(&|p| p.f, 0.0, slope, slopes.g.amax())
         .map(|fine| ("the objective".into(), slope / unit, fine / unit));
     let row = |k: usize| {
         let j = program.rows[k];
@@ -198,7 +196,13 @@ pub(crate) fn wrong_gradients(
             program.scaling.constraints[j],
             slopes.a.row_dot(k, &direction),
         );
-        let fine = disagrees(&|p| p.c[k], slope, slopes.a.row_amax(k))?;
+        // A row that vanishes has the rounding of what it is compared with.
+        let bounds = [program.row_lower[k].abs(), program.row_upper[k].abs()];
+        let of = bounds
+            .into_iter()
+            .filter(|b| b.is_finite())
+            .fold(0.0, f64::max);
+        let fine = disagrees(&|p| p.c[k], of, slope, slopes.a.row_amax(k))?;
         Some((program.constraint_name(j), slope / unit, fine / unit))
     };
     let found = objective.or_else(|| (0..program.rows.len()).find_map(row));

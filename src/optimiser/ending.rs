@@ -1,47 +1,18 @@
-//! How a run ended: the ending of an iteration, the final iterate of a method, and its status.
-//! Whether the conditions hold is tested in `convergence`.
+//! The final iterate of a method, and the best point of a run. How a run ended is in `status`;
+//! whether the conditions hold is tested in `convergence`.
 
 use nalgebra::DVector;
 
 use crate::optimiser::convergence::{
-    is_at_precision, is_solved_at_end, is_solved_in_user_units, kkt, scaled_residual,
+    dominant_row, is_at_precision, is_solved, is_solved_in_user_units, kkt, scaled_residual,
 };
 use crate::optimiser::linear::quasi_newton::QuasiNewton;
 use crate::optimiser::multipliers::ScaledMultipliers;
 use crate::optimiser::options::Method;
-use crate::optimiser::outcome::{Kkt, Status};
+use crate::optimiser::outcome::Kkt;
 use crate::optimiser::program::{Derivatives, EarlyExit, Point, Program};
 use crate::optimiser::scaling::Units;
-
-/// How the iteration ended.
-#[derive(Clone, Debug, PartialEq)]
-pub(crate) enum Ending {
-    /// The caller's test was met, or the optimality conditions.
-    Reached,
-    /// The point is a stationary point of the violation.
-    Infeasible,
-    /// The objective falls below all bounds.
-    Unbounded,
-    /// No step is accepted although the radius is tiny.
-    Stalled,
-    /// The conditions hold in scaled units, but these do not suit the point.
-    Misscaled,
-}
-
-/// Step, relative to max(1, ‖x‖∞), of the test for descent. An objective that can fall must fall
-/// within it.
-const NEARBY: f64 = 1e-6;
-
-/// What evaluations near a final iterate say of a claim that it solves the program.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub(crate) enum Claim {
-    /// Nothing: the residuals decide.
-    Untested,
-    /// The conditions hold in the units of the user and no descent was found nearby.
-    Confirmed,
-    /// The residuals mean nothing here.
-    Refuted,
-}
+use crate::optimiser::status::Status;
 
 /// The final iterate of a method.
 pub(crate) struct FinalIterate {
@@ -51,7 +22,6 @@ pub(crate) struct FinalIterate {
     pub slopes: Derivatives,
     pub multipliers: ScaledMultipliers,
     pub scaled: f64,
-    pub claim: Claim,
     /// The units of these numbers.
     pub units: Units,
     pub b: QuasiNewton,
@@ -60,6 +30,26 @@ pub(crate) struct FinalIterate {
 }
 
 impl FinalIterate {
+    /// The same with the status that its residuals justify: a method that can make no progress has
+    /// converged if the conditions hold.
+    pub(crate) fn judged(mut self, program: &Program<'_>) -> FinalIterate {
+        let (point, slopes, z) = (&self.point, &self.slopes, &self.multipliers);
+        let solved = is_solved(program, point, slopes, z, self.scaled);
+        match self.status {
+            Status::Stalled | Status::IterationLimit | Status::EvaluationLimit if solved => {
+                self.status = Status::Converged;
+            }
+            Status::Converged if !solved => self.status = Status::Stalled,
+            _ => {}
+        }
+        self
+    }
+
+    /// The same with another status.
+    pub(crate) fn with_status(self, status: Status) -> FinalIterate {
+        FinalIterate { status, ..self }
+    }
+
     /// Sets the program to the units of this iterate.
     pub(crate) fn restore_units(&self, program: &mut Program<'_>) {
         program.set_units(&self.units);
@@ -106,68 +96,41 @@ impl FinalIterate {
     }
 
     /// The same, with a new status if a method stalled: [`Status::Converged`] if the conditions
-    /// hold in the units of the user, [`Status::AtPrecision`] if rounding caused the stall. In
-    /// neither case may the Lagrangian fall nearby.
-    pub(crate) fn with_stall_named(mut self, program: &mut Program<'_>) -> FinalIterate {
-        if self.status != Status::Stalled || self.is_solved(program) {
+    /// hold in the units of the user, [`Status::AtPrecision`] if rounding caused the stall,
+    /// [`Status::Degenerate`] if a row dominates.
+    pub(crate) fn with_stall_named(mut self, program: &Program<'_>) -> FinalIterate {
+        if self.status != Status::Stalled {
             return self;
         }
         let (point, slopes, z) = (&self.point, &self.slopes, &self.multipliers);
         let kkt = self.kkt(program);
-        let absolute = is_solved_in_user_units(program, point, slopes, &kkt);
+        let dominant = dominant_row(program, slopes, z);
+        let absolute = is_solved_in_user_units(program, point, slopes, &kkt) && dominant.is_none();
         // Unbounded multipliers show in the complementarity products even if forces vanish. Where
         // all multipliers vanish, these products say nothing.
         let tolerance = program.options.tolerance;
         let vanish = [&z.y, &z.zl, &z.zu].iter().all(|z| z.amax() <= tolerance);
         let precise = is_at_precision(program, point, slopes, z, &mut self.b);
         let holds = absolute && (kkt.relative_complementarity <= tolerance || precise && vanish);
-        if (holds || precise) && !self.falls_nearby(program) {
-            if holds {
-                self.claim = Claim::Confirmed;
+        if holds || precise {
+            self.status = if holds {
+                Status::Converged
             } else {
-                self.status = Status::AtPrecision;
-            }
+                Status::AtPrecision
+            };
+        } else if let Some(j) = dominant {
+            self.status = Status::Degenerate {
+                constraint: program.constraint_name(j),
+            };
         }
         self
-    }
-
-    /// Whether the Lagrangian falls along its steepest descent after a small step. True also if it
-    /// cannot be evaluated there.
-    fn falls_nearby(&self, program: &mut Program<'_>) -> bool {
-        let (z, x) = (&self.multipliers, &self.point.x);
-        let bounds = &z.zu - &z.zl;
-        let force = &self.slopes.g + self.slopes.a.tr_mul(&z.y) + &bounds;
-        let length = NEARBY * x.amax().max(1.0) / force.amax();
-        let moved = DVector::from_fn(x.len(), |i, _| {
-            (x[i] - length * force[i]).clamp(program.lower[i], program.upper[i])
-        });
-        let Ok(trial) = program.evaluate(&moved) else {
-            return true;
-        };
-        let terms = [
-            trial.f - self.point.f,
-            z.y.dot(&(&trial.c - &self.point.c)),
-            bounds.dot(&(&moved - x)),
-        ];
-        terms.iter().sum::<f64>() < -10.0 * f64::EPSILON * self.point.f.abs()
-    }
-
-    /// Whether the conditions hold, whatever the status of the method.
-    pub(crate) fn is_solved(&self, program: &Program<'_>) -> bool {
-        let (point, slopes, z) = (&self.point, &self.slopes, &self.multipliers);
-        match self.claim {
-            Claim::Confirmed => true,
-            Claim::Refuted => false,
-            Claim::Untested => is_solved_at_end(program, point, slopes, z, self.scaled),
-        }
     }
 }
 
 /// Replaces the final iterate of a run that did not converge by a better point of the run. If that
 /// is better by more than the tolerance, the run had not reached the precision of the objective.
 pub(crate) fn best_of(program: &mut Program<'_>, finish: FinalIterate) -> FinalIterate {
-    let settled = matches!(finish.status, Status::Converged | Status::Infeasible { .. })
-        || finish.status == Status::Stalled && finish.is_solved(program);
+    let settled = matches!(finish.status, Status::Converged | Status::Infeasible { .. });
     let at_precision = finish.status == Status::AtPrecision;
     let f = finish.point.f.abs();
     let unit = f.max(program.unit_of_objective() * program.scaling.objective);
@@ -219,6 +182,7 @@ pub(crate) fn best_of(program: &mut Program<'_>, finish: FinalIterate) -> FinalI
         scaled,
         ..finish
     }
+    .judged(program)
 }
 
 /// The outcome if all variables are fixed.
@@ -247,35 +211,20 @@ pub(crate) fn unfinished(program: &Program<'_>, point: Point, slopes: Derivative
         method: program.first_method(),
         b: QuasiNewton::new(point.x.len(), options.dense_limit, options.memory),
         scaled: scaled_residual(program, &point, &slopes, &multipliers),
-        claim: Claim::Untested,
         units: program.units(),
         multipliers,
         point,
         slopes,
-        barrier: options.initial_barrier,
+        barrier: options.first_barrier(),
         radius: options.initial_radius,
     }
 }
 
 /// The verdict on a point at which the worst row cannot be improved.
-fn infeasible(program: &Program<'_>, at: &Point) -> Status {
+pub(crate) fn infeasible(program: &Program<'_>, at: &Point) -> Status {
     let (violation, j) = program.worst_violation(&at.c);
     Status::Infeasible {
         constraint: program.constraint_name(j),
         violation,
-    }
-}
-
-pub(crate) fn status_of(
-    program: &Program<'_>,
-    result: Result<Ending, EarlyExit>,
-    at: &Point,
-) -> Status {
-    match result {
-        Ok(Ending::Reached) => Status::Converged,
-        Ok(Ending::Unbounded) => Status::Unbounded,
-        Ok(Ending::Infeasible) => infeasible(program, at),
-        Ok(Ending::Stalled | Ending::Misscaled) | Err(EarlyExit::Failed(_)) => Status::Stalled,
-        Err(EarlyExit::Halt(status)) => status,
     }
 }

@@ -11,8 +11,9 @@ use crate::optimiser::nlp::{
     Evaluation, EvaluationFailure, Gradients, fault_of_evaluation, fault_of_gradients,
     length_of_evaluation, length_of_gradients,
 };
-use crate::optimiser::outcome::{FailedDesign, Status};
+use crate::optimiser::outcome::FailedDesign;
 use crate::optimiser::program::{Derivatives, EarlyExit, Point, Program};
+use crate::optimiser::status::Status;
 
 /// Largest number of recorded designs with a failed evaluation.
 const FAILED_DESIGNS_KEPT: usize = 100;
@@ -98,7 +99,7 @@ impl Program<'_> {
         let g = free
             .iter()
             .map(|&i| objective[i] * scaling.objective * scaling.variables[i]);
-        let mut g = DVector::from_iterator(free.len(), g);
+        let g = DVector::from_iterator(free.len(), g);
         // The place of each variable among the free or the fixed ones.
         let mut place = vec![0; full.len()];
         let mut is_free = vec![false; full.len()];
@@ -120,22 +121,12 @@ impl Program<'_> {
             };
             Jacobian::from_rows(columns, rows.iter().map(row))
         };
-        let mut a = part(true, free.len());
+        let a = part(true, free.len());
         let fixed_a = part(false, self.fixed.len());
         let norm = free
             .iter()
             .map(|&i| (objective[i] / self.units_judged[i]).abs())
             .fold(0.0, f64::max);
-        let reach = DVector::from_fn(free.len(), |k, _| {
-            let width = self.upper[k] - self.lower[k];
-            width.min(x[k].abs().max(1.0))
-        });
-        let all: Vec<usize> = (0..free.len()).collect();
-        drop_rounding(&all, g.as_mut_slice(), &reach);
-        for r in 0..rows.len() {
-            let (index, row) = a.row_mut(r);
-            drop_rounding(index, row, &reach);
-        }
         let fixed = &self.fixed;
         let fixed_g = fixed.iter().map(|&i| objective[i] * scaling.objective);
         let slopes = Derivatives {
@@ -207,16 +198,4 @@ pub(super) fn unless_panicked<T>(call: impl FnOnce() -> T) -> Result<T, EarlyExi
         let what = text.unwrap_or("a message that is no text").into();
         EarlyExit::Halt(Status::Panicked { what })
     })
-}
-
-/// Sets derivatives to zero that are rounding errors. Over the `reach` of its variable such a
-/// derivative changes the function by less than the rounding of its largest change.
-fn drop_rounding(index: &[usize], slopes: &mut [f64], reach: &DVector<f64>) {
-    let changes = index.iter().zip(slopes.iter());
-    let largest = changes.fold(0.0_f64, |a, (&i, v)| a.max((v * reach[i]).abs()));
-    for (&i, slope) in index.iter().zip(slopes) {
-        if slope.abs() * reach[i] <= f64::EPSILON * largest {
-            *slope = 0.0;
-        }
-    }
 }

@@ -9,13 +9,11 @@ use crate::optimiser::program::{Derivatives, EarlyExit, Point, Program, Progress
 use crate::optimiser::quadratic::data::{Hessian, QpData};
 use crate::optimiser::quadratic::elastic::ElasticQp;
 
-/// Largest number of steps.
-const STEPS: usize = 100;
-/// A step is tried only if it promises this part of the violation.
+/// A step is tried only if it promises this part of the violation. Ten times more or less changes one
+/// outcome of the bed.
 const WORTHWHILE: f64 = 1e-6;
-/// Share of the promised reduction for which a step is accepted.
-const ACCEPT: f64 = 1e-2;
-/// Curvature of the subproblem, relative to violation and radius. It makes the step unique.
+/// Curvature of the subproblem, relative to violation and radius. It makes the step unique, and
+/// does not decide.
 const CURVATURE: f64 = 1e-6;
 /// Penalty of a row that a subproblem violates, relative to the largest multiplier it can have.
 const PENALTY: f64 = 10.0;
@@ -62,7 +60,7 @@ pub(crate) fn least_violation(
     let sides = Sides::of(program);
     let mut radius = point.x.amax().max(1.0);
     let mut least = false;
-    for _ in 0..STEPS {
+    loop {
         let worst = program.worst_violation(&point.c).0;
         if program.is_feasible(&point.c) || program.next_iteration().is_err() {
             break;
@@ -86,7 +84,7 @@ pub(crate) fn least_violation(
         let accepted = match tried {
             Ok(found) => {
                 let better = worst - program.worst_violation(&found.0.c).0;
-                if better >= ACCEPT * gain {
+                if better > 0.0 {
                     (point, slopes) = found;
                     if better > 0.75 * gain {
                         radius *= 2.0;

@@ -26,6 +26,7 @@ mod scaling;
 mod solve;
 mod start;
 mod state;
+mod status;
 mod trust_region;
 mod well_posed;
 
@@ -37,9 +38,10 @@ pub use linear::quasi_newton::QuasiNewton;
 pub use nlp::{Evaluation, EvaluationFailure, Gradients, Nlp};
 pub use observer::{Observer, Phase, Printed, Row, Silent};
 pub use options::{Barrier, Method, Options};
-pub use outcome::{ActiveBound, BoundSide, Counts, FailedDesign, Kkt, Outcome, Status};
+pub use outcome::{ActiveBound, BoundSide, Counts, FailedDesign, Kkt, Outcome};
 pub use solve::{resume, solve};
 pub use state::{Multipliers, SavedState, Scaling};
+pub use status::Status;
 
 #[cfg(test)]
 pub(crate) use interior_point::filter::{Filter, Measure};

@@ -1,6 +1,6 @@
 //! Lagrange multipliers in scaled units and in those of the user.
 
-use nalgebra::{DMatrix, DVector};
+use nalgebra::DVector;
 
 use crate::optimiser::linear::jacobian::Jacobian;
 use crate::optimiser::linear::kkt_sparse::SparseKkt;
@@ -44,14 +44,6 @@ impl ScaledMultipliers {
         ScaledMultipliers { y, zl, zu }
     }
 
-    /// Multipliers of the program whose objective is multiplied by `factor`.
-    pub(crate) fn times(mut self, factor: f64) -> Self {
-        self.y *= factor;
-        self.zl *= factor;
-        self.zu *= factor;
-        self
-    }
-
     /// Sets multipliers to zero that are smaller than the distance to their bound: what the barrier leaves of the
     /// force of a bound that is not active. Where the objective and its gradients vanish, their products are not
     /// small beside it.
@@ -86,9 +78,6 @@ impl ScaledMultipliers {
     }
 }
 
-/// Entries up to which the multipliers come from a singular value decomposition.
-const LARGEST_SVD: usize = 40_000;
-
 /// Multipliers of the active rows that balance the force on the variables between their bounds.
 pub(crate) fn least_squares(
     program: &Program<'_>,
@@ -114,32 +103,24 @@ pub(crate) fn least_squares(
         return None;
     }
     let g = DVector::from_fn(variables.len(), |i, _| -slopes.g[variables[i]]);
-    let fitted = if variables.len() * rows.len() > LARGEST_SVD {
-        let mut place = vec![usize::MAX; point.x.len()];
-        for (k, &i) in variables.iter().enumerate() {
-            place[i] = k;
-        }
-        let row = |&k: &usize| {
-            let entries = slopes.a.row(k).map(|(i, v)| (place[i], v));
-            entries.filter(|&(i, _)| i != usize::MAX).collect()
-        };
-        let a = Jacobian::from_rows(variables.len(), rows.iter().map(row));
-        let ones = DVector::from_element(variables.len(), 1.0);
-        let zeros = DVector::zeros(rows.len());
-        // The least-squares solution of Aᵀ y = g is that of [I Aᵀ; A 0] (r, y) = (g, 0).
-        let factor = SparseKkt::factor(&ones, None, &a, &zeros, None)?;
-        let mut y = zeros.clone();
-        for _ in 0..3 {
-            let rest = &g - a.tr_mul(&y);
-            y += factor.solve(&rest, &zeros).1;
-        }
-        y
-    } else {
-        let a = DMatrix::from_fn(variables.len(), rows.len(), |i, k| {
-            slopes.a[(rows[k], variables[i])]
-        });
-        a.svd(true, true).solve(&g, 1e-12).ok()?
+    let mut place = vec![usize::MAX; point.x.len()];
+    for (k, &i) in variables.iter().enumerate() {
+        place[i] = k;
+    }
+    let row = |&k: &usize| {
+        let entries = slopes.a.row(k).map(|(i, v)| (place[i], v));
+        entries.filter(|&(i, _)| i != usize::MAX).collect()
     };
+    let a = Jacobian::from_rows(variables.len(), rows.iter().map(row));
+    let ones = DVector::from_element(variables.len(), 1.0);
+    let zeros = DVector::zeros(rows.len());
+    // The least-squares solution of Aᵀ y = g is that of [I Aᵀ; A 0] (r, y) = (g, 0).
+    let factor = SparseKkt::factor(&ones, None, &a, &zeros, None)?;
+    let mut fitted = zeros.clone();
+    for _ in 0..3 {
+        let rest = &g - a.tr_mul(&fitted);
+        fitted += factor.solve(&rest, &zeros).1;
+    }
     let mut all = DVector::zeros(y.len());
     for (value, &k) in fitted.iter().zip(&rows) {
         all[k] = *value;

@@ -56,8 +56,9 @@ pub struct Options {
     pub scale_variables: bool,
     /// Rule for the barrier parameter (default adaptive).
     pub barrier: Barrier,
-    /// First barrier parameter (default 0.1).
-    pub initial_barrier: f64,
+    /// Barrier parameter of the first iteration (default: the adaptive rule chooses it, the monotone
+    /// rule begins with 0.1).
+    pub initial_barrier: Option<f64>,
     /// Least distance of the start from a bound, relative to max(1, |bound|) and to the distance
     /// of the two bounds (default 1e-2).
     pub bound_push: f64,
@@ -71,6 +72,11 @@ pub struct Options {
 }
 
 impl Options {
+    /// The barrier parameter before the first iteration.
+    pub(crate) fn first_barrier(&self) -> f64 {
+        self.initial_barrier.unwrap_or(0.1)
+    }
+
     /// Number of variables up to which subproblems of the trust region have a dense matrix. They
     /// cost more than the matrix.
     pub(crate) fn dense_subproblems(&self) -> usize {
@@ -91,7 +97,7 @@ impl Default for Options {
             scaling_gradient: 2.0,
             scale_variables: false,
             barrier: Barrier::default(),
-            initial_barrier: 0.1,
+            initial_barrier: None,
             bound_push: 1e-2,
             dense_limit: 20,
             memory: 30,

@@ -9,12 +9,13 @@ use crate::optimiser::linear::jacobian::Jacobian;
 use crate::optimiser::nlp::{EvaluationFailure, Nlp};
 use crate::optimiser::observer::{Observer, Phase, Row};
 use crate::optimiser::options::{Method, Options};
-use crate::optimiser::outcome::{Counts, FailedDesign, Status};
+use crate::optimiser::outcome::{Counts, FailedDesign};
 use crate::optimiser::state::Scaling;
+use crate::optimiser::status::Status;
 
 /// Distance from the first point, relative to its size. Beyond it a fall in scaled units shows an
-/// unbounded objective.
-const FAR: f64 = 1e6;
+/// unbounded objective, and a solution is doubted: without that, three claims of the bed are false.
+pub(crate) const FAR: f64 = 1e4;
 
 /// Values of the scaled functions at a scaled point.
 #[derive(Clone, Debug)]
@@ -52,6 +53,15 @@ pub(crate) enum EarlyExit {
     Failed(EvaluationFailure),
     /// The run must end.
     Halt(Status),
+}
+
+impl From<EarlyExit> for Status {
+    fn from(exit: EarlyExit) -> Status {
+        match exit {
+            EarlyExit::Failed(_) => Status::Stalled,
+            EarlyExit::Halt(status) => status,
+        }
+    }
 }
 
 /// The data of an iteration besides its point.

@@ -2,11 +2,8 @@
 
 use crate::optimiser::doubts::degenerate_row;
 use crate::optimiser::ending::FinalIterate;
-use crate::optimiser::outcome::Status;
-use crate::optimiser::program::{Derivatives, EarlyExit, Point, Program};
-
-/// Largest number of restarts.
-const RENEWALS: usize = 6;
+use crate::optimiser::program::{Derivatives, Point, Program};
+use crate::optimiser::status::Status;
 
 /// Restarts from a feasible point where `finish` stalled. The restart has new units, an empty
 /// quasi-Newton matrix and no earlier derivatives. It is repeated as long as the objective
@@ -17,8 +14,8 @@ pub(crate) fn renewed(
     run: impl Fn(&mut Program<'_>, (Point, Derivatives)) -> FinalIterate,
 ) -> FinalIterate {
     let norms = program.gradient_norms.clone();
-    for _ in 0..RENEWALS {
-        if finish.status != Status::Stalled || finish.is_solved(program) {
+    loop {
+        if finish.status != Status::Stalled {
             return finish;
         }
         let z = &finish.multipliers;
@@ -39,9 +36,7 @@ pub(crate) fn renewed(
             Ok(first) => run(program, first),
             Err(trouble) => {
                 finish.restore_units(program);
-                if let EarlyExit::Halt(status) = trouble {
-                    finish.status = status;
-                }
+                finish.status = trouble.into();
                 return finish;
             }
         };
@@ -49,7 +44,7 @@ pub(crate) fn renewed(
         let unit = before.abs().max(program.unit_of_objective());
         let worth = program.options.tolerance * unit;
         let lost = !program.is_feasible(&next.point.c);
-        if !next.is_solved(program) && (lost || gain <= worth) {
+        if next.status != Status::Converged && (lost || gain <= worth) {
             // There is no gain left. The residuals may be rounding relative to the gradients of the
             // run.
             finish.restore_units(program);
@@ -58,5 +53,4 @@ pub(crate) fn renewed(
         }
         finish = next;
     }
-    finish
 }

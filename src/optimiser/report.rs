@@ -5,9 +5,10 @@ use crate::optimiser::ending::FinalIterate;
 use crate::optimiser::multipliers::user_multipliers;
 use crate::optimiser::nlp::Nlp;
 use crate::optimiser::options::Method;
-use crate::optimiser::outcome::{ActiveBound, BoundSide, Counts, Kkt, Outcome, Status};
+use crate::optimiser::outcome::{ActiveBound, BoundSide, Counts, Kkt, Outcome};
 use crate::optimiser::program::{Derivatives, Program};
 use crate::optimiser::state::{SavedState, Scaling};
+use crate::optimiser::status::Status;
 
 /// State at the last point, which may differ from the best.
 pub(crate) fn state_of(program: &Program<'_>, finish: &FinalIterate) -> SavedState {
@@ -27,23 +28,14 @@ pub(crate) fn state_of(program: &Program<'_>, finish: &FinalIterate) -> SavedSta
 
 pub(crate) fn outcome(program: &Program<'_>, finish: FinalIterate, state: SavedState) -> Outcome {
     let kkt = finish.kkt(program);
-    let solved = finish.is_solved(program);
     let FinalIterate {
-        mut status,
+        status,
         method,
         point,
         slopes,
         multipliers,
         ..
     } = finish;
-    // A method that can make no progress has converged if the conditions hold.
-    match status {
-        Status::Stalled | Status::IterationLimit | Status::EvaluationLimit if solved => {
-            status = Status::Converged;
-        }
-        Status::Converged if !solved => status = Status::Stalled,
-        _ => {}
-    }
     let x = program.to_user(&point.x);
     let mut constraints = vec![0.0; program.scaling.constraints.len()];
     for (k, &j) in program.rows.iter().enumerate() {

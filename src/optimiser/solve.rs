@@ -4,18 +4,19 @@ use nalgebra::DVector;
 
 use crate::optimiser::convergence::scaled_residual;
 use crate::optimiser::doubts::{doubted, wrong_gradients};
-use crate::optimiser::ending::{Claim, FinalIterate, best_of, unfinished, without_freedom};
+use crate::optimiser::ending::{FinalIterate, best_of, unfinished, without_freedom};
 use crate::optimiser::interior_point::run::{RESUMED_PUSH, interior_point};
 use crate::optimiser::least_violation::least_violation;
 use crate::optimiser::multipliers::ScaledMultipliers;
 use crate::optimiser::nlp::Nlp;
 use crate::optimiser::observer::{Observer, Phase};
 use crate::optimiser::options::{Method, Options};
-use crate::optimiser::outcome::{Outcome, Status};
+use crate::optimiser::outcome::Outcome;
 use crate::optimiser::program::{Derivatives, EarlyExit, Point, Program, Progress};
 use crate::optimiser::report::{outcome, state_of, untried, without_values};
 use crate::optimiser::start::{Neighbourhood, first_point, left_start, look_around};
 use crate::optimiser::state::SavedState;
+use crate::optimiser::status::Status;
 use crate::optimiser::trust_region::run::trust_region;
 use crate::optimiser::well_posed;
 
@@ -24,9 +25,6 @@ use crate::optimiser::well_posed;
 /// evaluations an iteration crawls.
 const FIRST_ITERATIONS: f64 = 0.7;
 const FIRST_EVALUATIONS: f64 = 0.35;
-
-/// How often a run continues from a point near one that seems infeasible.
-const ESCAPES: usize = 3;
 
 /// Minimises f(x) subject to c_L ≤ c(x) ≤ c_U and x_L ≤ x ≤ x_U.
 ///
@@ -124,13 +122,16 @@ fn run(
     let saved = saved.filter(|s| s.is_of(point.f));
     match saved {
         Some(saved) => program.adopt_scaling(&saved.scaling, &mut point, &mut slopes),
-        None => program.scale(&mut point, &mut slopes),
+        None => {
+            program.measure_mixed(&mut point, &mut slopes);
+            program.scale(&mut point, &mut slopes);
+        }
     }
     let rest = DVector::zeros(point.c.len());
     let without_rows = ScaledMultipliers::from_rows(&program, &point, &slopes, rest);
     let progress = Progress {
         optimality: scaled_residual(&program, &point, &slopes, &without_rows),
-        barrier: options.initial_barrier,
+        barrier: options.first_barrier(),
         phase: if options.method == Method::TrustRegion {
             Phase::Sqp
         } else {
@@ -171,7 +172,7 @@ fn attempt(
         Method::InteriorPoint | Method::Auto => interior_point(program, point, slopes, saved, push),
     };
     let mut finish = run(program, first, saved);
-    if saved.is_none() && program.counts.iterations == 0 && finish.is_solved(program) {
+    if saved.is_none() && program.counts.iterations == 0 && finish.status == Status::Converged {
         finish = match left_start(program, &finish.point) {
             Some(next) => run(program, next, None),
             None => finish,
@@ -180,54 +181,58 @@ fn attempt(
             && let Some(what) = wrong_gradients(program, &finish.point, &finish.slopes)
         {
             finish.status = Status::Inconsistent { what };
-            finish.claim = Claim::Refuted;
         }
     }
-    for _ in 0..ESCAPES {
+    escaped(program, finish, |program, first| run(program, first, None))
+}
+
+/// What becomes of a final iterate that looks infeasible to first order: the end of a further run
+/// from a point that is feasible or less infeasible, or the point of the least violation.
+fn escaped(
+    program: &mut Program<'_>,
+    mut finish: FinalIterate,
+    run: impl Fn(&mut Program<'_>, (Point, Derivatives)) -> FinalIterate,
+) -> FinalIterate {
+    for may_leave in [true, false] {
         if !matches!(finish.status, Status::Infeasible { .. }) {
-            break;
+            return finish;
         }
-        // A run that has had a feasible point continues from it.
         if let Some(best) = program.feasible_best() {
             finish = match program.renew(best) {
-                Ok(first) => run(program, first, None),
+                Ok(first) => run(program, first),
                 Err(trouble) => {
                     finish.restore_units(program);
-                    finish.status = match trouble {
-                        EarlyExit::Halt(status) => status,
-                        EarlyExit::Failed(_) => Status::Stalled,
-                    };
-                    finish
+                    finish.with_status(trouble.into())
                 }
             };
             continue;
         }
-        match look_around(program, &finish.point) {
-            Ok(Neighbourhood::Less(first)) => finish = run(program, *first, None),
-            Ok(Neighbourhood::Flat) => {
-                finish.status = Status::Stalled;
-                break;
-            }
+        let around = if may_leave {
+            look_around(program, &finish.point)
+        } else {
+            Ok(Neighbourhood::More)
+        };
+        match around {
+            Ok(Neighbourhood::Less(first)) => finish = run(program, *first),
+            Ok(Neighbourhood::Flat) => return finish.with_status(Status::Stalled),
             Ok(Neighbourhood::More) | Err(EarlyExit::Failed(_)) => {
                 let (point, slopes, least) =
                     least_violation(program, finish.point.clone(), finish.slopes.clone());
-                if !program.is_feasible(&point.c) {
-                    finish = finish.infeasible_at(program, point, slopes);
-                    if !least {
-                        finish.status = Status::Stalled;
-                    }
-                    break;
+                if program.is_feasible(&point.c) {
+                    finish = run(program, (point, slopes));
+                } else {
+                    let at_least = finish.infeasible_at(program, point, slopes);
+                    return match least {
+                        true => at_least,
+                        false => at_least.with_status(Status::Stalled),
+                    };
                 }
-                finish = run(program, (point, slopes), None);
             }
-            Err(EarlyExit::Halt(status)) => {
-                finish.status = status;
-                break;
-            }
+            Err(EarlyExit::Halt(status)) => return finish.with_status(status),
         }
     }
     if matches!(finish.status, Status::Infeasible { .. }) && program.feasible_best().is_some() {
-        finish.status = Status::Stalled;
+        return finish.with_status(Status::Stalled);
     }
     finish
 }
@@ -252,10 +257,11 @@ fn auto(
                 | Status::IterationLimit
                 | Status::EvaluationLimit
                 | Status::AtPrecision
+                | Status::Degenerate { .. }
                 | Status::Infeasible { .. }
         );
         let large = program.free.len() > well_posed::LARGEST_TRUST_REGION;
-        if !hopeless || large || kept.is_solved(program) {
+        if !hopeless || large {
             break;
         }
         // At the best point the rows cannot be improved.
@@ -276,10 +282,11 @@ fn auto(
         let undecided = matches!(
             next.status,
             Status::Stalled | Status::IterationLimit | Status::EvaluationLimit
-        ) && !next.is_solved(program);
+        );
         let keep = match kept.status {
             Status::Infeasible { .. } => undecided,
             Status::AtPrecision => undecided || next.is_worse_than(&kept, program),
+            Status::Degenerate { .. } => next.status != Status::Converged,
             _ => false,
         };
         if !keep {

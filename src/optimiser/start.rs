@@ -7,20 +7,15 @@ use crate::optimiser::nlp::EvaluationFailure;
 use crate::optimiser::options::Method;
 use crate::optimiser::program::{Derivatives, EarlyExit, Point, Program};
 
-/// Number of starts tried if the functions are undefined.
-const START_TRIALS: usize = 12;
-
-/// Points tried near one that seems infeasible, and their distances relative to the size of the
-/// point if there are no bounds.
-const ESCAPE_TRIALS: usize = REACHES.len();
+/// Distances of the points tried near one that seems infeasible or at which the functions are
+/// undefined, relative to the size of the point if there are no bounds.
 const REACHES: [f64; 7] = [0.2, 1.0, 5.0, 0.5, 50.0, 500.0, 1e-3];
 
-/// A nearby violation is less if it differs by this part, and unchanged if it differs by less than
-/// the second part.
-const LESS: f64 = 1e-6;
-const UNCHANGED: f64 = 1e-12;
+/// A nearby violation is unchanged if it differs by less than this part.
+const UNCHANGED: f64 = 1e-6;
 
-/// Distance, relative to the size of a start, at which a start that seems solved is doubted.
+/// Distance, relative to the size of a start, at which a start that seems solved is doubted. Without this, a
+/// maximum is called solved.
 const ASIDE: f64 = 1e-2;
 
 /// Evaluates the start, moved into the interior of the bounds, or points near it.
@@ -30,8 +25,9 @@ pub(crate) fn first_point(
 ) -> Result<(Point, Derivatives), EarlyExit> {
     let start = program.start();
     let mut first_failure: Option<EvaluationFailure> = None;
-    for trial in 0..START_TRIALS {
-        let x = perturbed(program, &start, trial, push, (trial as f64 / 6.0).min(1.0));
+    for trial in 0..=REACHES.len() {
+        let reach = if trial > 0 { REACHES[trial - 1] } else { 0.0 };
+        let x = perturbed(program, &start, trial, push, reach);
         let tried = program
             .evaluate(&x)
             .and_then(|p| program.gradients(&x).map(|s| (p, s)));
@@ -69,7 +65,7 @@ pub(crate) fn look_around(
 ) -> Result<Neighbourhood, EarlyExit> {
     let now = program.total_violation(&at.c);
     let mut largest = 0.0_f64;
-    for trial in 1..=ESCAPE_TRIALS {
+    for trial in 1..=REACHES.len() {
         let x = perturbed(
             program,
             &at.x,
@@ -83,7 +79,7 @@ pub(crate) fn look_around(
             Err(halt) => return Err(halt),
         };
         let change = program.total_violation(&point.c) - now;
-        if change < -LESS * now {
+        if change < -UNCHANGED * now {
             let slopes = program.gradients(&x)?;
             return Ok(Neighbourhood::Less(Box::new((point, slopes))));
         }

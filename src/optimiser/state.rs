@@ -4,7 +4,8 @@ use serde::{Deserialize, Serialize};
 
 use crate::optimiser::linear::quasi_newton::QuasiNewton;
 
-/// Two values of one objective at almost the same point differ by less than this, relatively.
+/// Two values of one objective at almost the same point differ by less than this, relatively. Ten times
+/// more or less is the same.
 const SAME: f64 = 1e-6;
 
 /// Lagrange multipliers in the units of the user.
@@ -35,8 +36,8 @@ pub struct Scaling {
     pub variables: Vec<f64>,
     /// Norm ‖∇f‖∞ at the start, in the units of the user.
     pub objective_gradient: f64,
-    /// Typical ‖∇f‖∞ of the run, in the units of the user: the third largest of the first dozen of
-    /// points, or the median of all if that is larger.
+    /// Typical ‖∇f‖∞ of the run, in the units of the user: the third largest, or the median of fewer
+    /// than five.
     #[serde(default)]
     pub typical_gradient: f64,
     /// Norm ‖∇c_j‖∞ of each row at the start, in the units of the user.

@@ -2,7 +2,7 @@
 
 use crate::optimiser::nlp::Nlp;
 use crate::optimiser::options::{Method, Options};
-use crate::optimiser::outcome::Status;
+use crate::optimiser::status::Status;
 
 /// Largest number of variables for the trust region. Above it the subproblems take much longer than
 /// the iterations of the interior point.
@@ -94,7 +94,7 @@ fn fault_of_options(options: &Options) -> Option<String> {
         ("tolerance", options.tolerance),
         ("constraint_tolerance", options.constraint_tolerance),
         ("scaling_gradient", options.scaling_gradient),
-        ("initial_barrier", options.initial_barrier),
+        ("initial_barrier", options.first_barrier()),
         ("bound_push", options.bound_push),
         ("initial_radius", options.initial_radius),
     ];

@@ -124,7 +124,7 @@ fn contradictory_linear_constraints_are_named() {
 
 #[test]
 fn nonlinear_constraint_without_a_root_is_named() {
-    named_infeasible(hard::without_root, 0.5, 150);
+    named_infeasible(hard::without_root, 0.5, 300);
 }
 
 #[test]
@@ -389,7 +389,7 @@ fn limits_and_interruptions_are_named_and_every_row_is_a_number() {
 #[test]
 fn programs_of_other_collections_are_solved() {
     for (method, unsolved) in [
-        (Method::InteriorPoint, vec!["SPIRAL"]),
+        (Method::InteriorPoint, vec![]),
         (Method::TrustRegion, vec!["BROWNBS", "POWELLBSLS"]),
         (Method::Auto, vec![]),
     ] {
@@ -406,7 +406,12 @@ fn programs_of_other_collections_are_solved() {
                     "{name} {method:?}: {:?}",
                     outcome.kkt
                 );
-                let runs = if method == Method::Auto { 2 } else { 1 };
+                // The interior point follows the spiral by ways that rounding decides.
+                let runs = match (method, name) {
+                    (_, "SPIRAL") => 3,
+                    (Method::Auto, _) => 2,
+                    _ => 1,
+                };
                 assert!(
                     outcome.counts.evaluations <= runs * 700,
                     "{name}: {:?}",

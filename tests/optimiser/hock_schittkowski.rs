@@ -13,7 +13,7 @@ use problems::problem::Problem;
 use residuals::Residuals;
 
 /// Objectives of stationary points that are not global minima, at which a method may end.
-const STATIONARY: [(&str, f64); 10] = [
+const STATIONARY: [(&str, f64); 11] = [
     ("HS2", 4.941229318),
     ("HS16", 23.14466091),
     ("HS20", 40.19873024),
@@ -23,6 +23,7 @@ const STATIONARY: [(&str, f64); 10] = [
     ("HS97", 4.071246356),
     ("HS98", 4.071246356),
     ("HS108", -0.674981442),
+    ("HS108", -0.5),
     ("HS116", 97.59103473),
 ];
 

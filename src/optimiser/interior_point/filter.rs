@@ -1,11 +1,9 @@
 //! The tests that a line search puts to a point: progress from the last point, and the filter, pairs
 //! of infeasibility and merit that must not be dominated.
 
-/// Share of the infeasibility by which a step must improve on a filter entry.
+/// Share of the infeasibility by which a step must improve on a filter entry (Wächter & Biegler 2006, as all
+/// constants of the filter).
 pub(crate) const MARGIN: f64 = 1e-5;
-
-/// Growth of the infeasibility allowed after the filter was cleared.
-const GROWTH: f64 = 100.0;
 
 /// Least share of the predicted decrease of φ.
 const ARMIJO: f64 = 1e-4;
@@ -60,10 +58,9 @@ impl Filter {
         }
     }
 
-    /// Clears the filter at a point of infeasibility `theta`. It may then grow a hundredfold.
-    pub(crate) fn clear(&mut self, theta: f64) {
+    /// Forgets all entries. The largest infeasibility stays refused.
+    pub(crate) fn clear(&mut self) {
         self.entries.clear();
-        self.largest = self.largest.min(GROWTH * theta.max(10.0));
     }
 
     /// Whether (θ, φ) is acceptable to every entry.

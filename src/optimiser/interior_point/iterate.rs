@@ -34,23 +34,6 @@ pub(crate) struct Iterate {
     pub zu: DVector<f64>,
 }
 
-/// Residuals of the perturbed optimality conditions, scaled by the size of the multipliers
-/// (Wächter & Biegler 2006, eq. 5).
-#[derive(Clone, Copy, Debug)]
-pub(crate) struct Residuals {
-    pub stationarity: f64,
-    pub violation: f64,
-    pub complementarity: f64,
-}
-
-impl Residuals {
-    pub(crate) fn largest(&self) -> f64 {
-        self.stationarity
-            .max(self.violation)
-            .max(self.complementarity)
-    }
-}
-
 impl Layout {
     pub(crate) fn new(program: &Program<'_>) -> Layout {
         let (n, m) = (program.lower.len(), program.row_lower.len());
@@ -178,19 +161,18 @@ impl Iterate {
             .collect()
     }
 
-    /// Residuals of the conditions perturbed by `mu`.
-    pub(crate) fn residuals(&self, layout: &Layout, mu: f64) -> Residuals {
+    /// Largest residual of the conditions perturbed by `mu`, scaled by the size of the multipliers
+    /// (Wächter & Biegler 2006, eq. 5).
+    pub(crate) fn residual(&self, layout: &Layout, mu: f64) -> f64 {
         let products = self.products(layout);
         let bounds: f64 = self.zl.lp_norm(1) + self.zu.lp_norm(1);
         let size = (self.y.len() + products.len()).max(1) as f64;
         let scale_s = ((self.y.lp_norm(1) + bounds) / size).max(100.0) / 100.0;
         let scale_c = (bounds / products.len().max(1) as f64).max(100.0) / 100.0;
+        let stationarity = self.lagrangian_slope(layout).amax() / scale_s;
+        let violation = layout.residual(&self.point.c, &self.s).amax();
         let complementarity = products.iter().map(|p| (p - mu).abs()).fold(0.0, f64::max);
-        Residuals {
-            stationarity: self.lagrangian_slope(layout).amax() / scale_s,
-            violation: layout.residual(&self.point.c, &self.s).amax(),
-            complementarity: complementarity / scale_c,
-        }
+        stationarity.max(violation).max(complementarity / scale_c)
     }
 
     /// Multipliers of the rows that minimise the norm of the gradient of the Lagrangian, or `None`
@@ -216,7 +198,8 @@ impl Iterate {
     }
 }
 
-/// Multipliers of bounds stay within this factor of μ/distance.
+/// Multipliers of bounds stay within this factor of μ/distance (Wächter & Biegler 2006, eq. 16). Without
+/// this the bed takes 1 % more evaluations and loses HS18.
 const MULTIPLIER_BAND: f64 = 1e10;
 /// Least curvature of a reciprocal model relative to the mean. It does not decide: on the bed 1e-3
 /// and 1e-9 give the same.
@@ -310,7 +293,8 @@ impl NormalEquations {
     }
 }
 
-/// Number of rows and variables up to which least-squares multipliers come from dense matrices.
+/// Number of rows and variables up to which least-squares multipliers come from dense matrices. Sparse ones
+/// alone lose two problems of the bed.
 const SMALL: usize = 200;
 
 /// Distance between `bound` and the start: `push` relative to max(1, |bound|), at most that part of

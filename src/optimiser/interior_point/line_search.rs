@@ -8,31 +8,33 @@ use crate::optimiser::interior_point::iterate::{Iterate, Layout};
 use crate::optimiser::linear::quasi_newton::QuasiNewton;
 use crate::optimiser::program::{Derivatives, EarlyExit, Point, Program};
 
-/// Longest step, relative to the size of the point.
+/// Longest step, relative to the size of the point. Without it two problems of the bed are lost: a
+/// step to the end of an exponential function.
 const LONGEST: f64 = 100.0;
-/// Part of the longest step below which the search ends.
-const VANISHED: f64 = 1e-16;
+
 /// A step is accepted for the residual of the conditions alone if the residual falls by this
 /// factor, the violation and the relative rise of the barrier function are at most these, and so
-/// many trials were refused.
+/// many trials were refused. Without such steps the bed loses nothing, but a plate of 256 thicknesses
+/// crawls: its matrix of few pairs misleads the filter (256 simulations and more, 55 with them).
 const SOFT_GAIN: f64 = 0.9;
 const SOFT_VIOLATION: f64 = 1e-4;
 const SOFT_RISE: f64 = 1e-6;
 const SOFT_TRIALS: usize = 5;
 
-/// Least factor by which a refused step is shortened, and a corrected one may be shorter.
+/// Least factor by which a refused step is shortened, and a corrected one may be shorter. By halving
+/// alone, two problems of the bed are lost.
 const SHORTEST: f64 = 0.1;
 
-/// Factor by which a step to undefined functions is shortened, and how many such steps are
-/// announced.
-const UNDEFINED: f64 = 0.5;
+/// Number of halved steps that are announced where the functions are undefined. More would seldom be
+/// requested.
 const FORESEEN: i32 = 16;
 
-/// The search ends below this share of the least sensible step.
+/// The search ends below this share of the least sensible step (Wächter & Biegler 2006, eq. 23). Without
+/// such an end the bed takes 1 % more evaluations.
 const LEAST_STEP: f64 = 0.05;
 
 /// Below this sum of scaled residuals a point counts as feasible. The residuals are then mostly
-/// rounding, and the barrier function alone decides.
+/// rounding, and the barrier function alone decides. A tenth or ten times as much is the same.
 const FEASIBLE: f64 = 1e-9;
 
 /// Infeasibility θ of the residuals `r` of rows whose values are `c`.
@@ -51,7 +53,8 @@ pub(crate) struct Accepted {
     pub trials: usize,
 }
 
-/// Smallest relative change of a variable that exceeds rounding.
+/// Smallest relative change of a variable that exceeds rounding. Without it the bed takes 2 % more
+/// evaluations.
 const RESOLUTION: f64 = 1e-15;
 
 /// Data of one search.
@@ -115,25 +118,24 @@ impl LineSearch<'_> {
                 trials: 1,
             }));
         }
+        let least = self.least_step(&here);
         let mut first = None;
-        let least = self.least_step(&here).min(1e-3 * longest);
         let mut alpha = longest;
         let mut trials = 0;
         let resolved = self.least_resolved_step(&direction);
         loop {
-            let goes_on = alpha >= least && alpha > VANISHED * longest && alpha > resolved;
+            let goes_on = alpha >= least && alpha > resolved;
             if (!goes_on || trials >= SOFT_TRIALS)
                 && let Some(point) = first.take()
                 && let Some((point, slopes, s)) =
                     self.soft(program, &here, point, &direction, longest)?
             {
-                filter.clear(here.theta);
-                let alpha = longest;
+                filter.clear();
                 return Ok(Some(Accepted {
                     point,
                     slopes,
                     s,
-                    alpha,
+                    alpha: longest,
                     direction,
                     trials,
                 }));
@@ -184,7 +186,7 @@ impl LineSearch<'_> {
     /// Announces the shorter steps that follow if the functions are undefined at step length
     /// `alpha`.
     fn foresee(&self, program: &mut Program<'_>, direction: &Direction, alpha: f64) {
-        let at = |k: i32| &self.at.point.x + &direction.x * (alpha * UNDEFINED.powi(k));
+        let at = |k: i32| &self.at.point.x + &direction.x * (alpha * 0.5_f64.powi(k));
         program.foresee((1..=FORESEEN).map(at));
     }
 
@@ -192,10 +194,10 @@ impl LineSearch<'_> {
     /// the minimum of the parabola through its values, within bounds.
     fn shorten(&self, here: &Measure, alpha: f64, last: &Option<(f64, f64)>) -> f64 {
         let Some((theta, phi)) = *last else {
-            return UNDEFINED;
+            return 0.5;
         };
         let rise = phi - here.phi - alpha * here.slope;
-        if here.slope >= 0.0 || rise <= 0.0 || theta > here.theta.max(SOFT_VIOLATION) {
+        if here.slope >= 0.0 || rise <= 0.0 || theta > here.theta.max(self.theta_small) {
             return 0.5;
         }
         (-0.5 * alpha * here.slope / rise).clamp(SHORTEST, 0.5)
@@ -212,10 +214,10 @@ impl LineSearch<'_> {
         direction: &Direction,
         alpha: f64,
     ) -> Result<Option<(Point, Derivatives, DVector<f64>)>, EarlyExit> {
-        let before = self.at.residuals(self.layout, self.mu);
+        let violation = self.layout.residual(&self.at.point.c, &self.at.s).amax();
         let s = &self.at.s + &direction.s * alpha;
         let rise = self.layout.barrier_function(point.f, &point.x, &s, self.mu) - here.phi;
-        if before.violation > SOFT_VIOLATION || rise > SOFT_RISE * here.phi.abs().max(1.0) {
+        if violation > SOFT_VIOLATION || rise > SOFT_RISE * here.phi.abs().max(1.0) {
             return Ok(None);
         }
         let slopes = match program.gradients(&point.x) {
@@ -233,8 +235,9 @@ impl LineSearch<'_> {
             zu: &self.at.zu + &direction.zu * dual,
         };
         moved.estimate_multipliers(self.layout);
-        let after = moved.residuals(self.layout, self.mu);
-        Ok((after.largest() <= SOFT_GAIN * before.largest()).then_some((point, slopes, s)))
+        let before = self.at.residual(self.layout, self.mu);
+        let after = moved.residual(self.layout, self.mu);
+        Ok((after <= SOFT_GAIN * before).then_some((point, slopes, s)))
     }
 
     /// Step length below which no variable changes.

@@ -8,3 +8,4 @@ pub(crate) mod iteration;
 pub(crate) mod line_search;
 pub(crate) mod restoration;
 pub(crate) mod run;
+pub(crate) mod verdict;

@@ -2,11 +2,11 @@
 
 use nalgebra::DVector;
 
-use crate::optimiser::ending::Ending;
 use crate::optimiser::interior_point::iterate::Layout;
 use crate::optimiser::interior_point::iteration::InteriorPoint;
 use crate::optimiser::interior_point::line_search::infeasibility;
 use crate::optimiser::program::{EarlyExit, Point, Program};
+use crate::optimiser::status::Status;
 use crate::optimiser::trust_region::steering::{Goal, TrustRegion};
 
 impl InteriorPoint {
@@ -16,29 +16,45 @@ impl InteriorPoint {
         &mut self,
         program: &mut Program<'_>,
         failures: usize,
-    ) -> Result<Option<Ending>, EarlyExit> {
+    ) -> Result<Option<Status>, EarlyExit> {
         let theta = self.theta();
         let small = 1e-2 * program.options.tolerance.min(program.least_allowed());
-        if theta <= small || failures > 3 {
-            if failures == 1 && !self.b.is_empty() {
-                self.b.reset();
-                self.filter.clear(self.theta());
-                return Ok(None);
-            }
-            if theta <= small || failures > 6 {
-                return Ok(Some(Ending::Stalled));
-            }
+        if theta <= small && failures == 1 && !self.b.is_empty() {
+            self.b.reset();
+            self.filter.clear();
+            return Ok(None);
         }
-        self.restore(program, theta, 0.9)
+        if theta <= small || failures > 6 {
+            return Ok(Some(Status::Stalled));
+        }
+        self.restore(program, theta)
     }
 
-    /// Reduces the violation by the factor `gain`, until the filter accepts the point.
+    /// Handles short steps: forgets the matrix near feasible points, restores feasibility elsewhere.
+    pub(crate) fn leave_crawl(
+        &mut self,
+        program: &mut Program<'_>,
+    ) -> Result<Option<Status>, EarlyExit> {
+        if self.short_steps == 2 {
+            self.b.reset();
+            self.doubt_gradients(program)?;
+        }
+        let theta = self.theta();
+        if self.short_steps == 4 {
+            self.short_steps = 0;
+            if theta > self.theta_small {
+                return self.restore(program, theta);
+            }
+        }
+        Ok(None)
+    }
+
+    /// Reduces the violation by a tenth or more, until the filter accepts the point.
     pub(crate) fn restore(
         &mut self,
         program: &mut Program<'_>,
         theta: f64,
-        gain: f64,
-    ) -> Result<Option<Ending>, EarlyExit> {
+    ) -> Result<Option<Status>, EarlyExit> {
         let phi = self.layout.barrier_function(
             self.at.point.f,
             &self.at.point.x,
@@ -53,9 +69,9 @@ impl InteriorPoint {
             let s = slacks(layout, p);
             let theta_new = infeasibility(&layout.residual(&p.c, &s), &p.c);
             let phi = layout.barrier_function(p.f, &p.x, &s, mu);
-            theta_new <= gain * theta && filter.accepts(theta_new, phi)
+            theta_new <= 0.9 * theta && filter.accepts(theta_new, phi)
         };
-        let ending = search.run(program, accepted)?;
+        let ending = search.iterate(program, accepted)?;
         let before = self.theta();
         self.at.s = slacks(&self.layout, &search.point);
         self.at.point = search.point;
@@ -65,13 +81,13 @@ impl InteriorPoint {
             .keep_multipliers_in_band(&self.layout, self.barrier.mu);
         self.at.estimate_multipliers(&self.layout);
         match ending {
-            Ending::Reached => Ok(None),
-            Ending::Infeasible => Ok(Some(Ending::Infeasible)),
+            Status::Converged => Ok(None),
+            Status::Infeasible { .. } => Ok(Some(ending)),
             _ if after < 0.5 * before => {
-                self.filter.clear(self.theta());
+                self.filter.clear();
                 Ok(None)
             }
-            other => Ok(Some(other)),
+            _ => Ok(Some(ending)),
         }
     }
 }

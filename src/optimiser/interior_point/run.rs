@@ -2,20 +2,20 @@
 
 use nalgebra::DVector;
 
-use crate::optimiser::convergence::{is_solved_at_end, scaled_residual};
-use crate::optimiser::ending::{Claim, Ending, FinalIterate, status_of};
+use crate::optimiser::convergence::scaled_residual;
+use crate::optimiser::ending::FinalIterate;
 use crate::optimiser::interior_point::iteration::InteriorPoint;
 use crate::optimiser::multipliers::{ScaledMultipliers, scaled_multipliers};
 use crate::optimiser::options::Method;
-use crate::optimiser::outcome::Status;
 use crate::optimiser::program::{Derivatives, Point, Program};
 use crate::optimiser::renewal::renewed;
 use crate::optimiser::state::SavedState;
 
-/// Least relative distance of the start of a resumed run from a bound.
+/// Least relative distance of the start of a resumed run from a bound: so near that it stays where it was.
 pub(crate) const RESUMED_PUSH: f64 = 1e-10;
 
-/// Larger multipliers are replaced by fitted ones at the end of a run.
+/// Larger multipliers may hide finite ones at the same point, which are fitted then. Without this,
+/// one claim of the bed is false.
 const LARGEST_MULTIPLIER: f64 = 1e20;
 
 pub(crate) fn interior_point(
@@ -38,68 +38,27 @@ pub(crate) fn interior_point(
 }
 
 fn finish_interior_point(program: &mut Program<'_>, mut method: InteriorPoint) -> FinalIterate {
-    let mut result = method.run(program);
-    while let Ok(Ending::Misscaled | Ending::Stalled) = result
-        && let Some(factor) = method.better_scale(program)
-    {
-        let z = method.multipliers(program).times(factor);
-        let (b, mu) = (method.b.times(factor), method.barrier.mu * factor);
-        let mut point = method.at.point.clone();
-        program.rescale(factor);
-        point.f *= factor;
-        // Small derivatives were lost in the rounding of the large ones at the start.
-        let slopes = match program.gradients(&point.x) {
-            Ok(slopes) => slopes,
-            Err(trouble) => {
-                result = Err(trouble);
-                break;
-            }
-        };
-        method = InteriorPoint::new(program, point, slopes, RESUMED_PUSH);
-        method.warm_start(&z, b, mu.min(program.options.initial_barrier));
-        result = method.run(program);
-    }
-    let status = status_of(program, result, &method.at.point);
+    let status = method.run(program);
     let mut multipliers = method.multipliers(program);
     let mut scaled = method.optimality();
-    let (point, slopes) = (method.at.point, method.at.slopes);
-    // Unbounded multipliers may hide finite ones at the same point. They mean nothing if the rows
-    // cannot be satisfied.
-    let bounded = multipliers
-        .y
-        .iter()
-        .chain(&multipliers.zl)
-        .chain(&multipliers.zu);
-    let sane = -LARGEST_MULTIPLIER..=LARGEST_MULTIPLIER;
-    let useless =
-        matches!(status, Status::Infeasible { .. }) || bounded.copied().any(|v| !sane.contains(&v));
-    if status == Status::Stalled || useless {
+    let parts = [&multipliers.y, &multipliers.zl, &multipliers.zu];
+    if parts.iter().any(|z| z.amax() > LARGEST_MULTIPLIER) {
+        let (point, slopes) = (&method.at.point, &method.at.slopes);
         let zero = DVector::zeros(point.c.len());
-        let y = if useless { &zero } else { &multipliers.y };
-        let fitted = ScaledMultipliers::polished(program, &point, &slopes, y);
-        // A barrier that has not fallen leaves forces of bounds that are not active.
-        let mut released = fitted.clone();
-        released.release(program, &point);
-        for choice in [fitted, released] {
-            let residual = scaled_residual(program, &point, &slopes, &choice);
-            let solved = is_solved_at_end(program, &point, &slopes, &choice, residual);
-            if useless || solved {
-                (multipliers, scaled) = (choice, residual);
-                break;
-            }
-        }
+        multipliers = ScaledMultipliers::polished(program, point, slopes, &zero);
+        scaled = scaled_residual(program, point, slopes, &multipliers);
     }
     FinalIterate {
         status,
         method: Method::InteriorPoint,
         multipliers,
         scaled,
-        claim: Claim::Untested,
         units: program.units(),
-        point,
-        slopes,
+        point: method.at.point,
+        slopes: method.at.slopes,
         b: method.b,
         barrier: method.barrier.mu,
         radius: program.options.initial_radius,
     }
+    .judged(program)
 }

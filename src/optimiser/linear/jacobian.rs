@@ -175,10 +175,11 @@ impl Jacobian {
         }
     }
 
-    /// Variables and entries of row `j`, which may be changed.
-    pub(crate) fn row_mut(&mut self, j: usize) -> (&[usize], &mut [f64]) {
-        let part = self.starts[j]..self.starts[j + 1];
-        (&self.index[part.clone()], &mut self.value[part])
+    /// Multiplies each column by its factor.
+    pub(crate) fn scale_columns(&mut self, factors: &DVector<f64>) {
+        for (&i, v) in self.index.iter().zip(&mut self.value) {
+            *v *= factors[i];
+        }
     }
 
     /// Whether each column has an entry that is not zero.

@@ -6,13 +6,11 @@ use crate::optimiser::linear::jacobian::Jacobian;
 use crate::optimiser::linear::quasi_newton::QuasiNewton;
 
 /// Relative size of a pivot of the Schur complement below which rows count as dependent.
+/// A tenth makes a false claim.
 const DEPENDENT: f64 = 1e-14;
 
-/// Number of inequality rows above which they are eliminated first.
-const MANY: usize = 100;
-
-/// Factors by the Schur complement S = A H⁻¹ Aᵀ + D with H = B + Σ. If there are many inequality
-/// rows, more than variables, they are eliminated first: H = B + Σ + A_Iᵀ D_I⁻¹ A_I, and S has the other
+/// Factors by the Schur complement S = A H⁻¹ Aᵀ + D with H = B + Σ. If there are more inequality
+/// rows than variables, they are eliminated first: H = B + Σ + A_Iᵀ D_I⁻¹ A_I, and S has the other
 /// rows. The inertia is (n, m, 0) whenever S has a Cholesky factor; where equality rows are
 /// dependent it has none and δ is added to D.
 pub(crate) struct DenseKkt {
@@ -36,7 +34,7 @@ impl DenseKkt {
     ) -> Option<DenseKkt> {
         let (n, m) = (sigma.len(), d.len());
         let inequalities = d.iter().filter(|d| **d > 0.0).count();
-        let many = inequalities > n.max(MANY);
+        let many = inequalities > n;
         let (eliminated, kept): (Vec<usize>, Vec<usize>) =
             (0..m).partition(|&j| many && d[j] > 0.0);
         let mut h = b.dense_plus(sigma);
@@ -85,15 +83,6 @@ impl DenseKkt {
             if delta > 1.0 {
                 return None;
             }
-        }
-    }
-
-    /// Number of refinements that help.
-    pub(crate) fn refinements(&self) -> usize {
-        if self.eliminated.is_empty() {
-            if self.regularisation > 0.0 { 0 } else { 2 }
-        } else {
-            5
         }
     }
 

@@ -1,28 +1,25 @@
 //! Positive definite approximation of the Hessian of the Lagrangian.
 
+use std::borrow::Cow;
+
 use nalgebra::{Cholesky, DMatrix, DVector};
 use serde::{Deserialize, Serialize};
 
 use crate::optimiser::linear::compact::Compact;
 use crate::optimiser::linear::curvature::Curvature;
 
-/// Least cosine of step and gradient difference for which a pair is used.
+/// Least cosine of step and gradient difference for which a pair is used: √ε. It does not decide.
 const CURVATURE: f64 = 1.5e-8;
 
-/// Factor of the scale σ when pairs without positive curvature clear the memory.
+/// Factor of the scale σ when pairs without positive curvature clear the memory. Without this, five problems
+/// of the bed are lost, seven by the trust region.
 const FLATTER: f64 = 0.1;
-
-/// Least scale. It allows steps of 1e20 gradients in an unbounded program.
-const FLATTEST: f64 = 1e-20;
 
 /// Share of a change of the gradient that a separable model may leave unexplained.
 const FORETOLD: f64 = 0.2;
 
-/// Least and largest entry of the diagonal of a limited memory.
-const FLATTEST_BASE: f64 = 1e-10;
-const STEEPEST_BASE: f64 = 1e12;
-
-/// Largest number of pairs from which a dense matrix is rebuilt.
+/// Largest number of pairs from which a dense matrix is rebuilt. With 30, the trust region loses five
+/// problems of the bed.
 const DENSE_PAIRS: usize = 200;
 
 /// BFGS matrix B, built from pairs s = x₊ − x and y = ∇L(x₊) − ∇L(x).
@@ -104,7 +101,7 @@ pub(crate) struct Spectrum {
     pub values: DVector<f64>,
 }
 
-/// Least eigenvalue kept, relative to σ.
+/// Least eigenvalue kept, relative to σ: rounding must not make B indefinite.
 const LEAST_EIGENVALUE: f64 = 1e-10;
 
 impl QuasiNewton {
@@ -150,24 +147,6 @@ impl QuasiNewton {
             model: self.model.clone(),
             ..*self
         }
-    }
-
-    /// `factor` B.
-    pub(crate) fn times(&self, factor: f64) -> QuasiNewton {
-        let mut b = self.stored();
-        b.sigma *= factor;
-        let diagonals = b.base.iter_mut().chain(&mut b.model);
-        diagonals.for_each(|d| *d *= factor);
-        for pair in &mut b.pairs {
-            pair.y *= factor;
-        }
-        b
-    }
-
-    /// Curvature sᵀy/sᵀs of the newest pair, if there is one.
-    pub(crate) fn newest_curvature(&self) -> Option<f64> {
-        let pair = self.pairs.last()?;
-        Some(pair.s.dot(&pair.y) / pair.s.norm_squared())
     }
 
     /// Sets the scale σ that B has without pairs.
@@ -237,8 +216,8 @@ impl QuasiNewton {
         let sds: f64 = (0..s.len()).map(|i| s[i] * s[i] * base[i]).sum();
         for i in 0..s.len() {
             let d = base[i];
-            base[i] = (d - (d * s[i]).powi(2) / sds + y[i] * y[i] / sy)
-                .clamp(FLATTEST_BASE, STEEPEST_BASE);
+            let updated = d - (d * s[i]).powi(2) / sds + y[i] * y[i] / sy;
+            base[i] = updated.max(f64::EPSILON * d);
         }
     }
 
@@ -264,7 +243,7 @@ impl QuasiNewton {
             self.skipped += 1;
             if self.skipped >= 2 {
                 self.reset();
-                self.sigma = (FLATTER * self.sigma).max(FLATTEST);
+                self.sigma = (FLATTER * self.sigma).max(f64::MIN_POSITIVE);
             }
             return;
         }
@@ -307,28 +286,30 @@ impl QuasiNewton {
         let (misfit, _) = fit(&|i| kept.get(i).copied().unwrap_or(1.0));
         let (of_model, factor) = fit(&|i| model[i]);
         if !self.dense && of_model < misfit {
-            let scaled = |d: &f64| (d * factor).clamp(FLATTEST_BASE, STEEPEST_BASE);
-            self.model = model.iter().map(scaled).collect();
+            self.model = model.iter().map(|d| d * factor).collect();
         }
     }
 
-    /// The pairs that B satisfies one after the other.
-    fn secants(&self) -> Vec<(DVector<f64>, DVector<f64>)> {
-        let secant = |pair: &Pair| {
-            let (s, y) = (&pair.s, &pair.y);
-            if !self.structured {
-                return (s.clone(), y.clone());
+    /// The steps and changes of the gradient that B satisfies one after the other.
+    fn secants(&self) -> Vec<(&DVector<f64>, Cow<'_, DVector<f64>>)> {
+        let pairs = self.pairs.iter();
+        pairs.map(|pair| (&pair.s, self.change(pair))).collect()
+    }
+
+    /// The change y, or with a model D that foretells most of it D s + (y − foretold).
+    fn change<'p>(&self, pair: &'p Pair) -> Cow<'p, DVector<f64>> {
+        let (s, y) = (&pair.s, &pair.y);
+        if !self.structured {
+            return Cow::Borrowed(y);
+        }
+        let of_model = DVector::from_fn(self.n, |i, _| self.model[i] * s[i]);
+        if pair.foretold.len() == self.n {
+            let whole = &of_model + y - &pair.foretold;
+            if s.dot(&whole) > CURVATURE.sqrt() * s.norm() * whole.norm() {
+                return Cow::Owned(whole);
             }
-            let mut change = DVector::from_fn(self.n, |i, _| self.model[i] * s[i]);
-            if pair.foretold.len() == self.n {
-                let whole = &change + y - &pair.foretold;
-                if s.dot(&whole) > CURVATURE.sqrt() * s.norm() * whole.norm() {
-                    change = whole;
-                }
-            }
-            (s.clone(), change)
-        };
-        self.pairs.iter().map(secant).collect()
+        }
+        Cow::Owned(of_model)
     }
 
     /// Whether B is kept as a dense matrix.
@@ -367,19 +348,21 @@ impl QuasiNewton {
 
     /// B as a dense matrix.
     pub(crate) fn dense(&mut self) -> &DMatrix<f64> {
-        let (base, pairs) = match self.cached.dense {
-            Some(_) => (DVector::zeros(0), Vec::new()),
-            None => (self.base(), self.secants()),
+        let b = match self.cached.dense.take() {
+            Some(b) => b,
+            None => self.assembled(),
         };
-        self.cached.dense.get_or_insert_with(|| {
-            let mut b = DMatrix::from_diagonal(&base);
-            for (s, y) in &pairs {
-                let bs = &b * s;
-                b.ger(-1.0 / s.dot(&bs), &bs, &bs, 1.0);
-                b.ger(1.0 / y.dot(s), y, y, 1.0);
-            }
-            b
-        })
+        self.cached.dense.insert(b)
+    }
+
+    fn assembled(&self) -> DMatrix<f64> {
+        let mut b = DMatrix::from_diagonal(&self.base());
+        for (s, y) in self.secants() {
+            let bs = &b * s;
+            b.ger(-1.0 / s.dot(&bs), &bs, &bs, 1.0);
+            b.ger(1.0 / y.dot(s), &y, &y, 1.0);
+        }
+        b
     }
 
     /// Product B v.
@@ -431,7 +414,7 @@ impl QuasiNewton {
         }
         if self.cached.compact.is_none() {
             let secants = self.secants();
-            let pairs = secants.iter().map(|(s, y)| (s, y));
+            let pairs = secants.iter().map(|(s, y)| (*s, y.as_ref()));
             self.cached.compact = Some(Compact::new(self.base(), pairs));
         }
         self.cached.compact.as_ref()

@@ -8,7 +8,7 @@ use nalgebra::DVector;
 use crate::optimiser::linear::quasi_newton::Spectrum;
 use crate::optimiser::quadratic::data::settings;
 
-/// Eigenvalues this close to σ, relatively, count as σ.
+/// Eigenvalues this close to σ, relatively, count as σ: their springs would be stiff beyond measure.
 const SAME: f64 = 1e-6;
 
 /// Minimises ½ s tᵀB t + qᵀ(t, e) subject to rows · (t, e) ≤ rhs, for B = σ I + W diag(λ − σ) Wᵀ and

@@ -6,32 +6,25 @@
 
 use nalgebra::DVector;
 
-use crate::optimiser::convergence::{Verdict, judge, scaled_residual};
-use crate::optimiser::ending::Ending;
+use crate::optimiser::convergence::{LONGEST_DOMINANCE, dominant_row, is_solved, scaled_residual};
+use crate::optimiser::ending::infeasible;
 use crate::optimiser::linear::quasi_newton::QuasiNewton;
 use crate::optimiser::multipliers::ScaledMultipliers;
 use crate::optimiser::observer::Phase;
 use crate::optimiser::program::{Derivatives, EarlyExit, Point, Program, Progress};
 use crate::optimiser::quadratic::elastic::ElasticQp;
+use crate::optimiser::status::Status;
 use crate::optimiser::trust_region::steering::{Goal, IRREDUCIBLE, Model, TrustRegion};
 
 /// Share of the predicted reduction for which a step is accepted.
 const ACCEPT: f64 = 1e-4;
 
-/// Number of successive steps whose predicted reduction may be less than rounding.
-const LOST_STEPS: usize = 4;
-
-/// How often the matrix is cleared if there is no progress, and the next radius relative to the
-/// size of the point.
-const RENEWALS: usize = 3;
-const RENEWED_RADIUS: f64 = 0.1;
-
-/// Share of the violation that the linearisation may still remove at an infeasible point.
+/// The same share where no step is left.
 const STATIONARY: f64 = 1e-4;
 
-/// After this number of successive refused steps, gradients are evaluated at refused feasible
-/// points too. A matrix from few pairs refuses many steps before it knows a curved valley.
-const LEARN: usize = 1;
+/// Number of successive steps whose predicted reduction may be less than rounding. Without this, steep
+/// starts end at the limit of iterations.
+const LOST_STEPS: usize = 4;
 
 impl TrustRegion {
     pub(crate) fn new(
@@ -56,16 +49,8 @@ impl TrustRegion {
             radius: options.initial_radius * point_size,
             goal,
             penalty: DVector::from_element(m, 1.0),
+            dominated: 0,
         }
-    }
-
-    /// Continues with the objective multiplied by `factor` and with its slopes.
-    pub(crate) fn rescale(&mut self, factor: f64, slopes: Derivatives) {
-        self.point.f *= factor;
-        self.slopes = slopes;
-        self.b = self.b.times(factor);
-        self.y *= factor;
-        self.penalty *= factor;
     }
 
     pub(crate) fn weight(&self) -> f64 {
@@ -77,20 +62,19 @@ impl TrustRegion {
         ScaledMultipliers::polished(program, &self.point, &self.slopes, &self.y)
     }
 
-    /// Iterates until `reached` holds or the method ends.
-    pub(crate) fn run(
+    /// Iterates until the conditions, or `reached`, hold or no step helps.
+    pub(crate) fn iterate(
         &mut self,
         program: &mut Program<'_>,
         mut reached: impl FnMut(&Program<'_>, &Point) -> bool,
-    ) -> Result<Ending, EarlyExit> {
+    ) -> Result<Status, EarlyExit> {
         let tiny = 1e-13;
-        let mut rejected = 0;
+        let mut refused = false;
         let mut lost = 0;
         let mut failed = 0;
-        let mut renewals = 0;
         loop {
             if self.goal == Goal::Optimum && program.is_unbounded(&self.point) {
-                return Ok(Ending::Unbounded);
+                return Ok(Status::Unbounded);
             }
             let Some(model) = self.solve_model(program) else {
                 if self.b.is_empty() && self.radius < 1e-6 {
@@ -101,34 +85,27 @@ impl TrustRegion {
                 continue;
             };
             self.y.copy_from(&model.step.y);
-            if model.irreducible && self.end(program, IRREDUCIBLE) == Ending::Infeasible {
-                return Ok(Ending::Infeasible);
+            if model.irreducible
+                && let ending @ Status::Infeasible { .. } = self.end(program, IRREDUCIBLE)
+            {
+                return Ok(ending);
             }
-            if let Some(ending) = self.settled(program) {
+            if let Some(ending) = self.ending(program) {
                 return Ok(ending);
             }
             let size = model.step.d.amax();
+            let stays = self.inside(program, &model.step.d) == self.point.x;
             let rounding = f64::EPSILON * self.merit(program, &self.point).abs().max(1e-8);
             lost = if model.predicted <= rounding {
                 lost + 1
             } else {
                 0
             };
-            let stays = self.inside(program, &model.step.d) == self.point.x;
-            let negligible = model.predicted <= 0.0 || stays || lost > LOST_STEPS;
-            if negligible || self.radius < tiny {
-                if renewals == RENEWALS || self.b.is_empty() {
-                    return Ok(self.end(program, STATIONARY));
-                }
-                // Curvature from long steps may make the subproblem too ill-conditioned.
-                renewals += 1;
-                lost = 0;
-                self.b.reset();
-                self.radius = RENEWED_RADIUS * self.point.x.amax().max(1.0);
-                continue;
+            if model.predicted <= 0.0 || stays || lost > LOST_STEPS || self.radius < tiny {
+                return Ok(self.end(program, STATIONARY));
             }
             program.next_iteration()?;
-            let (ratio, trials) = self.attempt(program, &model, rejected >= LEARN)?;
+            let (ratio, trials) = self.attempt(program, &model, refused)?;
             let boundary = size >= 0.99 * self.radius;
             let radius = self.radius;
             if ratio < 0.25 {
@@ -151,13 +128,8 @@ impl TrustRegion {
                     self.radius *= 2.5;
                 }
             }
-            rejected = match ratio {
-                f64::NEG_INFINITY => rejected,
-                r if r > ACCEPT => 0,
-                _ => rejected + 1,
-            };
-            if rejected == 8 {
-                self.b.reset();
+            if ratio != f64::NEG_INFINITY {
+                refused = ratio <= ACCEPT;
             }
             let scaled = self.optimality(program);
             let progress = Progress {
@@ -177,9 +149,9 @@ impl TrustRegion {
             let point = self.point.clone();
             program.report(&point, &progress)?;
             if ratio > ACCEPT && reached(program, &self.point) {
-                return Ok(Ending::Reached);
+                return Ok(Status::Converged);
             }
-            if let Some(ending) = self.settled(program) {
+            if let Some(ending) = self.ending(program) {
                 return Ok(ending);
             }
         }
@@ -187,9 +159,9 @@ impl TrustRegion {
 
     /// Classifies a point without further steps. It is infeasible only if the linearised violation
     /// cannot be reduced by more than `share` in a box of the size of the point.
-    fn end(&mut self, program: &mut Program<'_>, share: f64) -> Ending {
+    fn end(&mut self, program: &mut Program<'_>, share: f64) -> Status {
         if program.is_feasible(&self.point.c) {
-            return Ending::Stalled;
+            return Status::Stalled;
         }
         let (radius, goal) = (self.radius, self.goal);
         self.radius = self.point.x.amax().max(1.0);
@@ -201,9 +173,9 @@ impl TrustRegion {
         let now = program.total_violation(&c);
         match step {
             Some(step) if now - self.linear_violation(program, &step.d) <= share * now => {
-                Ending::Infeasible
+                infeasible(program, &self.point)
             }
-            _ => Ending::Stalled,
+            _ => Status::Stalled,
         }
     }
 
@@ -213,24 +185,22 @@ impl TrustRegion {
         scaled_residual(program, &self.point, &self.slopes, &z)
     }
 
-    /// Factor by which the objective should be scaled further, if any.
-    pub(crate) fn better_scale(&self, program: &Program<'_>) -> Option<f64> {
-        let curvature = self.b.newest_curvature().unwrap_or(0.0);
-        program.better_scale(&self.point, &self.slopes.g, curvature)
-    }
-
-    /// The ending of a run without further steps.
-    fn settled(&self, program: &Program<'_>) -> Option<Ending> {
+    /// How the run ends at this point, if it does.
+    fn ending(&mut self, program: &Program<'_>) -> Option<Status> {
         if self.goal == Goal::Feasibility {
             return None;
         }
         let z = self.multipliers(program);
-        let scaled = self.optimality(program);
-        match judge(program, &self.point, &self.slopes, &z, scaled) {
-            Verdict::Solved => Some(Ending::Reached),
-            Verdict::SolvedInScaledUnits => self.better_scale(program).map(|_| Ending::Misscaled),
-            Verdict::Unsolved => None,
+        let scaled = scaled_residual(program, &self.point, &self.slopes, &z);
+        if is_solved(program, &self.point, &self.slopes, &z, scaled) {
+            return Some(Status::Converged);
         }
+        let dominant =
+            dominant_row(program, &self.slopes, &z).filter(|_| program.is_feasible(&self.point.c));
+        self.dominated = dominant.map_or(0, |_| self.dominated + 1);
+        let constraint = program.constraint_name(dominant?);
+        // Each point is tested twice, and each step halves the distance at most.
+        (self.dominated > 4 * LONGEST_DOMINANCE).then_some(Status::Degenerate { constraint })
     }
 
     /// Exact penalty function w f + Σ ν_j violation_j.
@@ -295,7 +265,9 @@ impl TrustRegion {
         })
     }
 
-    /// Adds the curvature between the point and a refused point to the matrix.
+    /// Adds the curvature between the point and a refused point to the matrix, after the second
+    /// refused step in succession. A matrix from few pairs refuses many steps before it knows a
+    /// curved valley.
     fn learn(&mut self, program: &mut Program<'_>, trial: &Point) -> Result<(), EarlyExit> {
         let slopes = match program.gradients(&trial.x) {
             Ok(slopes) => slopes,

@@ -1,15 +1,13 @@
 //! A run of the trust region: phases without the objective, and its final iterate.
 
-use crate::optimiser::ending::{Claim, Ending, FinalIterate, status_of};
+use crate::optimiser::ending::FinalIterate;
 use crate::optimiser::multipliers::scaled_multipliers;
 use crate::optimiser::options::Method;
-use crate::optimiser::program::{Derivatives, EarlyExit, Point, Program};
+use crate::optimiser::program::{Derivatives, Point, Program};
 use crate::optimiser::renewal::renewed;
 use crate::optimiser::state::SavedState;
+use crate::optimiser::status::Status;
 use crate::optimiser::trust_region::steering::{Goal, TrustRegion};
-
-/// How often the trust-region method looks for a feasible point after the penalties failed.
-const FEASIBILITY_PHASES: usize = 2;
 
 pub(crate) fn trust_region(
     program: &mut Program<'_>,
@@ -33,50 +31,33 @@ pub(crate) fn trust_region(
 }
 
 fn finish_trust_region(program: &mut Program<'_>, mut method: TrustRegion) -> FinalIterate {
-    let mut result = optimise(program, &mut method);
-    for _ in 0..FEASIBILITY_PHASES {
-        let stuck = matches!(result, Ok(Ending::Stalled | Ending::Infeasible));
-        if !stuck || program.is_feasible(&method.point.c) {
-            break;
-        }
-        let (point, slopes) = (method.point.clone(), method.slopes.clone());
+    let optimise = |program: &mut Program<'_>, method: &mut TrustRegion| {
+        let ending = method.iterate(program, |_, _| false);
+        ending.unwrap_or_else(Status::from)
+    };
+    let mut status = optimise(program, &mut method);
+    let stuck = matches!(status, Status::Stalled | Status::Infeasible { .. });
+    if stuck && !program.is_feasible(&method.point.c) {
+        let (point, slopes) = (method.point, method.slopes);
         let mut phase = TrustRegion::new(program, point, slopes, Goal::Feasibility);
-        result = phase.run(program, |program, p| program.is_feasible(&p.c));
-        let (point, slopes) = (phase.point, phase.slopes);
-        method = TrustRegion::new(program, point, slopes, Goal::Optimum);
-        if !matches!(result, Ok(Ending::Reached)) {
-            break;
+        let ending = phase.iterate(program, |program, p| program.is_feasible(&p.c));
+        status = ending.unwrap_or_else(Status::from);
+        method = TrustRegion::new(program, phase.point, phase.slopes, Goal::Optimum);
+        if status == Status::Converged {
+            status = optimise(program, &mut method);
         }
-        result = optimise(program, &mut method);
     }
-    let status = status_of(program, result, &method.point);
     FinalIterate {
         status,
         method: Method::TrustRegion,
         multipliers: method.multipliers(program),
         scaled: method.optimality(program),
-        claim: Claim::Untested,
         units: program.units(),
         point: method.point,
         slopes: method.slopes,
         b: method.b,
-        barrier: program.options.initial_barrier,
+        barrier: program.options.first_barrier(),
         radius: method.radius,
     }
-}
-
-/// Runs the trust region, and again in better units if those of the start do not suit its end.
-fn optimise(program: &mut Program<'_>, method: &mut TrustRegion) -> Result<Ending, EarlyExit> {
-    loop {
-        let ending = method.run(program, |_, _| false)?;
-        if !matches!(ending, Ending::Misscaled | Ending::Stalled) {
-            return Ok(ending);
-        }
-        let Some(factor) = method.better_scale(program) else {
-            return Ok(ending);
-        };
-        program.rescale(factor);
-        let slopes = program.gradients(&method.point.x)?;
-        method.rescale(factor, slopes);
-    }
+    .judged(program)
 }

@@ -11,8 +11,8 @@ use crate::optimiser::quadratic::elastic::ElasticQp;
 /// Share of the best possible reduction of the linearised violation that a step must reach.
 const STEERING: f64 = 0.1;
 
-/// Share of the violation that the linearisation may still remove at a point called infeasible before all
-/// steps are exhausted.
+/// Share of the violation that the linearisation may still remove at a point called infeasible
+/// before all steps are exhausted. With 1e-4, HS111 from ten times its start is called infeasible.
 pub(crate) const IRREDUCIBLE: f64 = 1e-8;
 
 /// What the iteration minimises.
@@ -34,6 +34,8 @@ pub(crate) struct TrustRegion {
     pub radius: f64,
     pub(crate) goal: Goal,
     pub(crate) penalty: DVector<f64>,
+    /// Successive tests at which a row dominated.
+    pub(crate) dominated: usize,
     pub(crate) qp: ElasticQp,
 }
 
