@@ -355,7 +355,7 @@ fn parallel_gradients_of_rows_are_named() {
             let c = vec![(1.0 - x[0]).powi(3) - x[1]];
             (c, Jacobian::dense(1, 2, slopes))
         });
-        for (nlp, best, most) in [(&mut discs, 0.0, 600), (&mut horn, 1.0, 150)] {
+        for (nlp, best, most) in [(&mut discs, 0.0, 600), (&mut horn, 1.0, 250)] {
             let outcome = run(nlp, method);
             let context = format!("{method:?}: {:?} {:?}", outcome.status, outcome.counts);
             let named = matches!(outcome.status, Status::Degenerate { .. });
