@@ -561,11 +561,6 @@ fn integrals_of_round_off_take_no_more_samples_than_others() {
             json!({"radau": {"stages": 3}}),
         ),
         (
-            "spherical",
-            json!({"acceleration": {"body": "b", "point": "p", "direction": [1, 0, 0]}}),
-            json!({"radau": {"stages": 2}}),
-        ),
-        (
             "revolute",
             json!({"angular_velocity": {"body": "b", "direction": [1, 0, 0]}}),
             json!("dop853"),
