@@ -31,6 +31,13 @@ const MOST_LATE: f64 = 0.05;
 /// Reason of a choice after the end has moved past a kink.
 const PASSED: &str = "the end of the motion has passed an instant of a table";
 
+/// A motion of more steps than this moves, and its steps resolve its derivatives, too.
+const FEW: usize = 1000;
+/// Largest number of steps of a run for the tangent: so many for each step of the motion, and so many of a scene with one
+/// unknown, fewer with the square of their number.
+const PER_STEP: usize = 2;
+const OF_ONE: f64 = 3e7;
+
 /// Reason of steps that follow a tangent.
 const RESOLVED: &str = "the gradients need smaller steps than the motion";
 
@@ -210,10 +217,20 @@ impl Integration {
         let Some((settings, tolerance)) = self.overlooks_tangent() else {
             return Ok((run, None));
         };
+        if run.grid.steps() > FEW {
+            return Ok((run, None));
+        }
+        let numbering = &run.numbering;
+        let unknowns = 2 * (numbering.velocities() + numbering.constraints());
+        let alone = OF_ONE / (unknowns as f64).powi(2);
         let by_tangent = Settings {
             spacing: Spacing::Tolerance(tolerance),
             samples: Samples::Uniform(1),
             memory: 0,
+            limits: Limits {
+                steps: Some(PER_STEP * run.grid.steps() + alone as usize),
+                ..settings.limits.clone()
+            },
             ..settings.clone()
         };
         let duration = Complex64::from(run.duration);

@@ -8,6 +8,8 @@ use std::time::{Duration, Instant};
 /// (see [`Headway`](super::headway::Headway)).
 #[derive(Clone, Debug, Default)]
 pub(crate) struct Limits {
+    /// Number of steps after which an implicit run is given up.
+    pub steps: Option<usize>,
     /// Longest wall time of one simulation \[s\].
     pub seconds: Option<f64>,
     /// Observer of the progress.
@@ -181,6 +183,7 @@ mod tests {
     #[test]
     fn a_deadline_ends_simulations() {
         let limits = Limits {
+            steps: None,
             seconds: None,
             progress: Some(Arc::default()),
         };
@@ -200,6 +203,7 @@ mod tests {
     #[test]
     fn the_longest_simulation_is_told() {
         let limits = Limits {
+            steps: None,
             seconds: None,
             progress: Some(Arc::default()),
         };

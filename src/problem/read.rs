@@ -439,6 +439,7 @@ fn simulation(written: Option<&schema::Simulation>, usual: f64) -> Simulation {
         memory: None,
         samples: written.and_then(|written| written.samples),
         limits: integrate::Limits {
+            steps: None,
             seconds: written.and_then(|written| written.seconds),
             progress: None,
         },

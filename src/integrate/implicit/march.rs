@@ -54,9 +54,6 @@ pub(crate) struct Stretch {
     steps: Vec<(f64, f64)>,
 }
 
-/// Number of steps up to which a run resolves its tangent.
-const MOST_FOR_TANGENT: usize = 30_000;
-
 /// A step that is longer than the one before by this factor still grows. Growth extends a stretch by at most the other
 /// factor.
 const GROWS: f64 = 1.2;
@@ -198,7 +195,7 @@ fn march_until<S: SolveScalar>(
             break;
         }
         let begin = run.grid.reached();
-        if solver.resolves_tangent() && run.grid.steps() >= MOST_FOR_TANGENT {
+        if (settings.limits.steps).is_some_and(|most| run.grid.steps() >= most) {
             return Err(IntegrationFailure::NoHeadway {
                 time: run.time_reached(),
                 duration: duration.re(),

@@ -100,11 +100,6 @@ impl<'a, S: SolveScalar> Solver<'a, S> {
         }
     }
 
-    /// Whether the tangent is judged, too.
-    pub(crate) fn resolves_tangent(&self) -> bool {
-        self.tangent.is_some()
-    }
-
     /// Judges the tangent, too.
     pub(crate) fn resolve_tangent(&mut self) {
         let tangent = TangentError::new(self.model, self.numbering, self.scheme);
