@@ -1,6 +1,8 @@
 //! Integration of a problem from design to design. The method is chosen once. Steps that follow a
 //! tolerance are kept until their error is too large, so functions are smooth in the design.
 
+mod tangent;
+
 use super::event::{self, Admit};
 use super::flexible_limits;
 use super::memory;
@@ -10,7 +12,6 @@ use crate::integrate::{
     Chosen, Grid, IntegrationFailure, Limits, LinearSolver, Method, Samples, Settings, Spacing,
     Trajectory, choice, has_kinks, simulate, simulate_by,
 };
-use crate::math::Complex64;
 use crate::problem::Problem;
 
 /// Samples of a motion with steps by tolerance, for tables, figures and events.
@@ -30,16 +31,6 @@ const MOST_LATE: f64 = 0.05;
 
 /// Reason of a choice after the end has moved past a kink.
 const PASSED: &str = "the end of the motion has passed an instant of a table";
-
-/// A motion of more steps than this moves, and its steps resolve its derivatives, too.
-const FEW: usize = 1000;
-/// Largest number of steps of a run for the tangent: so many for each step of the motion, and so many of a scene with one
-/// unknown, fewer with the square of their number.
-const PER_STEP: usize = 2;
-const OF_ONE: f64 = 3e7;
-
-/// Reason of steps that follow a tangent.
-const RESOLVED: &str = "the gradients need smaller steps than the motion";
 
 /// Reason of the first choice of steps.
 pub(crate) const FIRST_DESIGN: &str = "first design";
@@ -187,67 +178,6 @@ impl Integration {
     pub(crate) fn chosen(&self) -> Option<(&Settings, &str)> {
         let (settings, reason) = self.chosen.as_ref()?;
         Some((settings, reason))
-    }
-
-    /// Whether steps in use that were chosen by `tolerance` have followed the error of the motion alone, although
-    /// gradients will be requested.
-    fn overlooks_tangent(&self) -> Option<(&Settings, f64)> {
-        let (settings, _) = self.chosen.as_ref()?;
-        match self.spacing {
-            Spacing::Tolerance(tolerance)
-                if self.gradients && self.derivatives && settings.method != Method::Dop853 =>
-            {
-                Some((settings, tolerance))
-            }
-            _ => None,
-        }
-    }
-
-    /// Makes the steps that `run` has chosen anew resolve a tangent, too: they are those of a run of `tangent`, the scene
-    /// with an infinitesimal change of the design, if these are more. A tangent that cannot be followed changes nothing.
-    ///
-    /// # Errors
-    /// If the simulation by these steps fails.
-    pub(super) fn resolve_tangent(
-        &mut self,
-        scene: &mut Scene<f64>,
-        run: Trajectory<f64>,
-        tangent: impl FnOnce() -> Scene<Complex64>,
-    ) -> Result<(Trajectory<f64>, Option<Refresh>), IntegrationFailure> {
-        let Some((settings, tolerance)) = self.overlooks_tangent() else {
-            return Ok((run, None));
-        };
-        if run.grid.steps() > FEW {
-            return Ok((run, None));
-        }
-        let numbering = &run.numbering;
-        let unknowns = 2 * (numbering.velocities() + numbering.constraints());
-        let alone = OF_ONE / (unknowns as f64).powi(2);
-        let by_tangent = Settings {
-            spacing: Spacing::Tolerance(tolerance),
-            samples: Samples::Uniform(1),
-            memory: 0,
-            limits: Limits {
-                steps: Some(PER_STEP * run.grid.steps() + alone as usize),
-                ..settings.limits.clone()
-            },
-            ..settings.clone()
-        };
-        let duration = Complex64::from(run.duration);
-        let Ok(found) = simulate(&tangent().model, duration, &by_tangent) else {
-            return Ok((run, None));
-        };
-        if found.grid.steps() <= run.grid.steps() {
-            return Ok((run, None));
-        }
-        let settings = Settings {
-            spacing: Spacing::Frozen(found.grid),
-            ..settings.clone()
-        };
-        let finer = event::settle(scene, &settings, run.duration, Admit::Late)?;
-        let (run, settings) = self.resolved(scene, finer, settings)?;
-        let refresh = self.take_steps(settings, RESOLVED.into());
-        Ok((self.keep(scene, run), Some(refresh)))
     }
 
     /// Takes other steps from now on.

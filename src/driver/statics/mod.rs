@@ -108,8 +108,8 @@ fn of_cases<'w>(
     structure: &Structure<f64>,
 ) -> Result<&'w mut StaticProblem, ModalFailure> {
     if workspace.statics.is_none() {
-        let new = StaticProblem::new(structure, &statics.supports, statics.node_unknowns);
-        workspace.statics = Some(new.map_err(StaticFailure::from)?);
+        let (supports, unknowns) = (&statics.supports, statics.node_unknowns);
+        workspace.statics = Some(StaticProblem::new(structure, supports, unknowns)?);
     }
     Ok(workspace.statics.as_mut().expect("it was made"))
 }
@@ -121,8 +121,8 @@ fn of_modes<'w>(
     structure: &Structure<f64>,
 ) -> Result<&'w mut ModalProblem, ModalFailure> {
     if workspace.modal.is_none() {
-        let new = ModalProblem::new(structure, &statics.supports, statics.node_unknowns);
-        workspace.modal = Some(new.map_err(StaticFailure::from)?);
+        let (supports, unknowns) = (&statics.supports, statics.node_unknowns);
+        workspace.modal = Some(ModalProblem::new(structure, supports, unknowns)?);
     }
     Ok(workspace.modal.as_mut().expect("it was made"))
 }

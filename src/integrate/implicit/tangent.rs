@@ -3,7 +3,7 @@
 //! A derivative of the motion may vibrate where the motion rests, and steps that pass over these vibrations damp them
 //! away: the exact adjoint of such steps is the exact derivative of a wrong number, and halved steps agree with it. So
 //! steps for derivatives are chosen by a run whose numbers have an infinitesimal part, the tangent in a direction of
-//! the design, and the error of both parts bounds the step (see `driver/integration.rs`).
+//! the design, and the error of both parts bounds the step (see `driver/integration/tangent.rs`).
 
 use super::Stage;
 use super::estimate::embedded;
