@@ -9,8 +9,9 @@ use crate::integrate::{
 };
 use crate::math::Complex64;
 
-/// A motion of more steps than this moves, and its steps resolve its derivatives, too.
-const FEW: usize = 1000;
+/// A motion of more steps than this moves, and its steps resolve its derivatives, too: of rigid scenes, and of flexible
+/// ones, whose tangents cost more.
+const FEW: [usize; 2] = [1000, 100];
 /// Largest number of steps of a run for the tangent: so many for each step of the motion, and so many of a scene with one
 /// unknown, fewer with the square of their number.
 const PER_STEP: usize = 2;
@@ -48,7 +49,7 @@ impl Integration {
         let Some((settings, tolerance)) = self.overlooks_tangent() else {
             return Ok((run, None));
         };
-        if run.grid.steps() > FEW {
+        if run.grid.steps() > FEW[usize::from(!scene.model.flexible.is_empty())] {
             return Ok((run, None));
         }
         let numbering = &run.numbering;
