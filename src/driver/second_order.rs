@@ -164,10 +164,11 @@ fn active(
     let n = outcome.x.len();
     let slopes = program.gradients(&outcome.x)?;
     let steepest = DVector::from_column_slice(&slopes.objective).amax();
-    // If the gradient vanishes, a tenth of its typical size replaces it.
+    // Where the gradient vanishes, its typical size decides: the multiplier of a bound through the optimum falls with the
+    // root of the barrier parameter.
     let scaling = &outcome.scaling;
     let elsewhere = scaling.typical_gradient.max(scaling.objective_gradient);
-    let force = WEAK * steepest.max(0.1 * elsewhere);
+    let force = WEAK * steepest.max(elsewhere);
     let (lower, upper) = program.variable_bounds();
     let mut free = Vec::new();
     let mut touched = Vec::new();
