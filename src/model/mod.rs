@@ -72,9 +72,9 @@ impl<S: Scalar> Model<S> {
                 coefficient.re() == 0.0
             }
             LoadKind::Friction { size, .. } => size.re() == 0.0,
-            LoadKind::Force { .. } | LoadKind::Torque { .. } | LoadKind::Distributed(_) => false,
+            // They are judged as what feeds the motion.
+            LoadKind::Force { .. } | LoadKind::Torque { .. } | LoadKind::Distributed(_) => true,
         };
-        let driven = self.joints.iter().any(|joint| !joint.drives.is_empty());
         let undamped = |body: &FlexibleBody<S>| match &body.form {
             Form::Modal(modal) => {
                 let viscous = modal.strain_damping().is_some_and(|beta| beta.re() != 0.0);
@@ -85,7 +85,7 @@ impl<S: Scalar> Model<S> {
                 all.all(|x| x.re() == 0.0)
             }
         };
-        !driven && self.loads.iter().all(conserves) && self.flexible.iter().all(undamped)
+        !self.is_fed() && self.loads.iter().all(conserves) && self.flexible.iter().all(undamped)
     }
 
     /// How far redundant rows may be open, relative to a length or as an angle \[rad\]: the tolerance of

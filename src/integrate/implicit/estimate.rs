@@ -77,21 +77,9 @@ impl<'a> Estimate<'a> {
         for (own, stage) in self.stages.iter_mut().zip(stages) {
             stage.real_into(own);
         }
-        let Stage {
-            q,
-            v,
-            qdot,
-            vdot,
-            lambda,
-            time,
-            ..
-        } = &mut self.from;
-        bodies::rates(numbering, q, v, qdot);
-        self.field.set_state(q, v, *time);
-        if self.field.factorise().is_err() {
+        if !true_rates(&mut self.field, &mut self.from) {
             return f64::NAN;
         }
-        self.field.accelerations(vdot, lambda);
         self.filter(newton.factors(), h);
         let (v, nv) = (&self.from.v, self.from.v.len());
         let end = &self.stages[self.stages.len() - 1].v;
@@ -134,6 +122,29 @@ impl<'a> Estimate<'a> {
         joints::rates(&at, &mut self.rows);
         open.max(largest(&self.rows) / speeds[0])
     }
+}
+
+/// Sets the rates and multipliers of a stage to those of the index-1 equations; false if these are singular.
+pub(super) fn true_rates<S: SolveScalar>(
+    field: &mut Accelerations<S>,
+    stage: &mut Stage<S>,
+) -> bool {
+    let Stage {
+        q,
+        v,
+        qdot,
+        vdot,
+        lambda,
+        time,
+        ..
+    } = stage;
+    bodies::rates(field.numbering, q, v, qdot);
+    field.set_state(q, v, *time);
+    let regular = field.factorise().is_ok();
+    if regular {
+        field.accelerations(vdot, lambda);
+    }
+    regular
 }
 
 /// Sets the right-hand side B (b̂_0 h ẏ_n + Σ e_i Z_i) / (b̂_0 h) of the estimated error K δ in the equations of motion, and 0

@@ -6,7 +6,7 @@
 //! the design, and the error of both parts bounds the step (see `driver/integration/tangent.rs`).
 
 use super::Stage;
-use super::estimate::embedded;
+use super::estimate::{embedded, true_rates};
 use super::radau::Scheme;
 use super::stage_newton::StageNewton;
 use crate::integrate::scale::Scale;
@@ -75,21 +75,9 @@ impl<'a, S: SolveScalar> TangentError<'a, S> {
     ) -> f64 {
         let numbering = self.numbering;
         self.from.set(from);
-        let Stage {
-            q,
-            v,
-            qdot,
-            vdot,
-            lambda,
-            time,
-            ..
-        } = &mut self.from;
-        bodies::rates(numbering, q, v, qdot);
-        self.field.set_state(q, v, *time);
-        if self.field.factorise().is_err() {
+        if !true_rates(&mut self.field, &mut self.from) {
             return f64::NAN;
         }
-        self.field.accelerations(vdot, lambda);
         let all = (self.model, numbering, self.scheme);
         let factors = newton.factors();
         let equations = (h, factors.equations.mass());
