@@ -92,7 +92,8 @@ pub(crate) struct Job {
     #[arg(long)]
     pub no_lowering: bool,
     /// Reports the estimated discretisation error of every function and of its gradient, by a
-    /// second simulation with steps of half the size; and that of reduced and rigid bases, by one with all nodes.
+    /// second simulation with steps of half the size; and that of bases of flexible bodies, by one with all nodes and
+    /// more functions of beams.
     #[arg(long)]
     pub error: bool,
     /// Writes the fields of structures to fields.vtu beside the results, for ParaView and meshio. Of shells that

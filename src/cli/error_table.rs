@@ -52,15 +52,15 @@ fn relative(error: f64, value: f64) -> String {
     }
 }
 
-/// The table of the errors of reduced bases; empty if there are none.
+/// The table of the errors of bases; empty if there are none.
 pub(crate) fn of_bases(problem: &Problem, found: &[bases::BasisError]) -> String {
     if found.is_empty() {
         return String::new();
     }
     let width = width(problem.function_names.iter());
     let mut text = format!(
-        "errors of reduced bases, against all nodes\n{:width$}  {:>16}  {:>16}  {:>9}  {:>9}\n",
-        "function", "value", "all nodes", "error", "relative"
+        "errors of bases, against all nodes and more functions of beams\n{:width$}  {:>16}  {:>16}  {:>9}  {:>9}\n",
+        "function", "value", "finer", "error", "relative"
     );
     let mut line = |name: &str, value: f64, other: f64| {
         let error = (value - other).abs();

@@ -11,6 +11,7 @@ use crate::driver::{
 };
 use crate::functions::evaluate::ungated_maximum;
 use crate::functions::peak::Maximum;
+use crate::integrate::IntegrationFailure;
 use crate::problem::Problem;
 use crate::report::{prepare_directory, write_all};
 use serde_json::{Map, Value, json};
@@ -48,7 +49,7 @@ pub(crate) fn simulate(job: &Job, json: bool, joint_axes: bool) -> Result<u8, Fa
         if job.error {
             let found = error::estimate(&problem, &simulation.at, &all(&problem), true);
             let text = table(&problem, &found.map_err(Failure::numerical)?);
-            let bases = of_bases(&problem, &simulation.at)?;
+            let bases = of_bases(&problem, &simulation.at);
             print(&(text + &bases + &warned(&problem, &simulation.at)))?;
         }
     }
@@ -98,6 +99,7 @@ fn as_json(
     let (run, counts) = (&simulation.at.run, simulation.at.run.counts);
     let names = &problem.function_names;
     let mut functions = Map::new();
+    let mut bases = None;
     let unknown = with_errors
         .then(|| unfollowed(problem, &simulation.at))
         .flatten();
@@ -130,7 +132,8 @@ fn as_json(
             own["gradient"] = Value::Object(gradient.collect());
         }
         let found = driver::bases::errors(problem, &simulation.at, &all);
-        for found in found.map_err(of_all_nodes)? {
+        bases = found.as_ref().err().map(of_finer);
+        for found in found.into_iter().flatten() {
             let own = &mut functions[&names[found.function]];
             own["basis_error"] = json!(found.error());
             if let Some([value, other]) = found.maximum {
@@ -140,7 +143,7 @@ fn as_json(
     }
     let mut warnings: Vec<String> = simulation.warning.iter().cloned().collect();
     warnings.extend(simulation.at.doubts(problem, 0..names.len()));
-    warnings.extend(unknown);
+    warnings.extend(unknown.into_iter().chain(bases));
     let first = &simulation.observations[0];
     let conserved = simulation.at.scene.model.conserves_energy();
     let (position, velocity) = simulation.constraint_drift();
@@ -271,22 +274,25 @@ pub(crate) fn errors(problem: &Problem, at: &Simulated) -> Result<String, Failur
     let text = table(problem, &found.map_err(Failure::numerical)?);
     Ok(match at {
         Simulated::Motion(simulation) => {
-            text + &of_bases(problem, &simulation.at)? + &warned(problem, &simulation.at)
+            text + &of_bases(problem, &simulation.at) + &warned(problem, &simulation.at)
         }
         Simulated::Statics(_) => text,
     })
 }
 
-/// A table of the errors of reduced bases, if there are any.
-fn of_bases(problem: &Problem, at: &Evaluated) -> Result<String, Failure> {
-    let found = driver::bases::errors(problem, at, &all(problem));
-    let found = found.map_err(of_all_nodes)?;
-    Ok(error_table::of_bases(problem, &found))
+/// A table of the errors of bases, if there are any.
+fn of_bases(problem: &Problem, at: &Evaluated) -> String {
+    match driver::bases::errors(problem, at, &all(problem)) {
+        Ok(found) => error_table::of_bases(problem, &found),
+        Err(failure) => format!("not known: {}\n", of_finer(&failure)),
+    }
 }
 
-/// The failure of the run that bases are compared with.
-fn of_all_nodes(failure: impl std::fmt::Display) -> Failure {
-    Failure::numerical(format!("the run with all nodes fails: {failure}"))
+/// Why the errors of bases are not known.
+fn of_finer(failure: &IntegrationFailure) -> String {
+    format!(
+        "errors of bases are not known: the run with all nodes and more functions of beams fails: {failure}"
+    )
 }
 
 /// A warning of a motion that magnifies round-off.

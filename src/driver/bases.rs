@@ -1,4 +1,4 @@
-//! The error of reduced bases: the same run with all nodes, or with richer bases.
+//! The error of bases of flexible bodies: the same run with all nodes and more functions of beams, or with richer bases.
 //!
 //! All nodes give the error of a basis itself, be it by truncation or because the basis was made for the
 //! design in the file. They may be dear. Richer bases have more fixed-interface modes and vectors of
@@ -30,16 +30,16 @@ impl BasisError {
     }
 }
 
-/// Functions of a simulated design with all nodes. Empty if no body has a reduced basis.
+/// Functions of a simulated design with all nodes and more functions of beams. Empty if no body has a basis.
 ///
 /// # Errors
-/// If the simulation with all nodes fails.
+/// If this simulation fails.
 pub(crate) fn errors(
     problem: &Problem,
     at: &Evaluated,
     which: &[usize],
 ) -> Result<Vec<BasisError>, IntegrationFailure> {
-    match problem.with_all_nodes(&at.x) {
+    match problem.with_finer_bodies(&at.x) {
         Some(other) => compare(at, &other, which),
         None => Ok(Vec::new()),
     }

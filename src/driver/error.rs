@@ -14,7 +14,7 @@
 //! its polynomials between the samples gives the second term.
 //!
 //! Flexible bodies have vibrations that steps of one size do not follow. A method that damps them makes f_{h/2} as wrong
-//! as f_h, and the difference of both may vanish. Such motions, and those by methods of order one and two, are made with
+//! as f_h, and the difference of both may vanish. Such motions, and those by methods up to order three, are made with
 //! doubled steps, too, and all three are judged together (see [`of_three`]).
 
 use super::evaluate::Evaluated;
@@ -228,7 +228,7 @@ fn doubled(
         false => run.grid.paired(),
     };
     // A difference that is small by chance tells by the other one; by methods of high order that would claim too much.
-    let told = !at.scene.model.flexible.is_empty() || run.method.order() <= 2;
+    let told = !at.scene.model.flexible.is_empty() || run.method.order() <= 3;
     let Some(grid) = grid.filter(|_| told) else {
         return Ok(None);
     };

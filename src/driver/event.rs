@@ -32,6 +32,8 @@ const FLAT: f64 = 1e-6;
 const SAME: f64 = 1e-9;
 /// An event on kept steps must not turn back within this part of the longest duration.
 const CLOSE: f64 = 1e-3;
+/// A motion that fails is repeated up to these parts of the time that it reached.
+const BEFORE: [f64; 3] = [0.99, 0.8, 0.4];
 /// Longest step of the secant method, relative to the duration.
 const LONGEST: f64 = 0.2;
 
@@ -79,6 +81,30 @@ pub(crate) fn first(
             waited: run.duration,
         }),
     }
+}
+
+/// Time of the first event in a motion of at most `waited`, which `run` gives up to any duration. A motion that fails
+/// later than its event has one all the same.
+///
+/// # Errors
+/// As of [`first`], or the failure of the motion.
+pub(crate) fn sought(
+    scene: &Scene<f64>,
+    until: &TerminalEvent<f64>,
+    waited: f64,
+    run: impl Fn(f64) -> Result<Trajectory<f64>, IntegrationFailure>,
+) -> Result<f64, IntegrationFailure> {
+    let within = |duration: f64| {
+        let all = run(duration)?;
+        first(until, &all, &until.gaps(&scene.model, &all))
+    };
+    let failure = match within(waited) {
+        Err(failure) if failure.time().is_some() => failure,
+        found => return found,
+    };
+    let reached = failure.time().unwrap_or(waited);
+    let found = BEFORE.iter().find_map(|part| within(part * reached).ok());
+    found.ok_or(failure)
 }
 
 /// The largest |g − c|.

@@ -327,9 +327,9 @@ impl Integration {
         // Steps with too large an error may still have found an event.
         scene.duration = waited;
         if let Some(until) = &scene.until {
-            let all = simulate_by(&scene.model, waited, self.method, &wanted)?.run;
-            let gaps = until.gaps(&scene.model, &all);
-            scene.duration = event::first(until, &all, &gaps)?;
+            scene.duration = event::sought(scene, until, waited, |duration| {
+                Ok(simulate_by(&scene.model, duration, self.method, &wanted)?.run)
+            })?;
         }
         let mut guess = scene.duration;
         let mut chosen = simulate_by(&scene.model, guess, self.method, &wanted)?;
@@ -444,10 +444,9 @@ impl Integration {
         }
         let guess = match self.event {
             Some(event) => event,
-            None => {
-                let all = simulate(&scene.model, scene.duration, settings)?;
-                event::first(until, &all, &until.gaps(&scene.model, &all))?
-            }
+            None => event::sought(scene, until, scene.duration, |duration| {
+                simulate(&scene.model, duration, settings)
+            })?,
         };
         // Steps chosen for this design may give another result, by their errors.
         let margin = match self.spacing {

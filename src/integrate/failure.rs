@@ -328,6 +328,26 @@ pub(crate) enum IntegrationFailure {
 }
 
 impl IntegrationFailure {
+    /// The time that a motion reached which cannot be continued; steps that are too large for a method fail otherwise
+    /// \[s\].
+    pub(crate) fn time(&self) -> Option<f64> {
+        match self {
+            Self::NewtonStalled { time, .. }
+            | Self::Singular { time, .. }
+            | Self::Projection { time, .. }
+            | Self::SingularPosition { time, .. }
+            | Self::Opened { time, .. }
+            | Self::StepTooSmall { time, .. }
+            | Self::Rejected { time, .. }
+            | Self::NoHeadway { time, .. }
+            | Self::NotFinite { time, .. }
+            | Self::RedundancyLost { time, .. }
+            | Self::Turned { time, .. }
+            | Self::InsideOut { time, .. } => Some(*time),
+            _ => None,
+        }
+    }
+
     /// The same failure with the drive at a dead point, if it is a singular position of one; q are positions near it.
     pub(crate) fn with_drive<S: Scalar>(mut self, model: &Model<S>, q: &[S]) -> Self {
         if let Self::SingularPosition { time, drive, .. } = &mut self {

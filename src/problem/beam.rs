@@ -1,6 +1,7 @@
 //! From the beams of a file to bodies with elastic coordinates.
 
 use super::quantity::Quantity;
+use super::schema::Document;
 use super::schema::flexible::{Beam, BeamSection, Damping, Frame, Functions, Strain};
 use super::section::section;
 use crate::math::Scalar;
@@ -19,6 +20,11 @@ const LINEAR_STRETCH: usize = 2;
 /// Poisson's ratio where a file gives none.
 const POISSON: f64 = 0.3;
 
+/// So many more has a beam of each kind that is held against it, up to the most that a file may ask for.
+const MORE: usize = 2;
+const MOST: usize = 12;
+const MOST_STRETCH: usize = 25;
+
 /// How many functions a beam has.
 pub(crate) fn modes(beam: &Beam) -> BeamModes {
     let number = |written: Option<u32>, default| written.unwrap_or(default) as usize;
@@ -36,6 +42,49 @@ pub(crate) fn modes(beam: &Beam) -> BeamModes {
         torsion,
         stretch: beam.modes.stretch.map_or(stretch, |n| n as usize),
     }
+}
+
+/// Gives every beam more functions of each kind that it has. False if there are no beams or none has fewer than it may.
+pub(super) fn enrich(document: &mut Document) -> bool {
+    let beams = document.bodies.values_mut();
+    let beams = beams.filter_map(|body| body.beam.as_mut());
+    beams.fold(false, |changed, beam| richer(beam) || changed)
+}
+
+fn richer(beam: &mut Beam) -> bool {
+    let before = kinds(&modes(beam));
+    let more = |count: usize, most: usize| match count {
+        0 => 0,
+        count => (count + MORE).min(most),
+    };
+    let [along_y, along_z, torsion] = [0, 1, 2].map(|kind| Some(more(before[kind], MOST) as u32));
+    (
+        beam.modes.bending_y,
+        beam.modes.bending_z,
+        beam.modes.torsion,
+    ) = (along_y, along_z, torsion);
+    let stretch = beam.modes.stretch;
+    beam.modes.stretch = stretch.map(|given| more(given as usize, MOST_STRETCH) as u32);
+    let after = kinds(&modes(beam));
+    if let Some(start) = &mut beam.start {
+        for row in [&mut start.coordinates, &mut start.rates]
+            .into_iter()
+            .flatten()
+        {
+            let mut given = std::mem::take(row).into_iter();
+            for (before, after) in before.into_iter().zip(after) {
+                row.extend(given.by_ref().take(before));
+                row.extend((before..after).map(|_| Quantity::fixed(0.0)));
+            }
+        }
+    }
+    after != before
+}
+
+/// Functions by kind, in the order of the coordinates.
+fn kinds(modes: &BeamModes) -> [usize; 4] {
+    let [along_y, along_z] = modes.bending;
+    [along_y, along_z, modes.torsion, modes.stretch]
 }
 
 /// Whether the sections of a beam shear.

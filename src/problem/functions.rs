@@ -1,17 +1,17 @@
 //! The functions of a scene from those of a problem file.
 
 use super::flexible::{FlexibleBodies, Sections, station, stations};
-use super::joints::starting_angle;
 use super::placement::{Assembly, GROUND};
 use super::quantity::vector;
 use super::schema::Document;
 use super::schema::functions::{self as written, CountedFrom, Function as Written, OfMotion};
 use super::schema::measured::{Bound as Side, JointReaction, OfSpring, ReactionAxes};
 use super::schema::mechanics::Point;
+use super::starting_angles::{starting_angle, starting_turn};
 use crate::functions::{
     Bound, EnergyPart, Function, Gate, GateSide, Instant, Projectile, Reduction, Release, Rotation,
 };
-use crate::math::rotation::{compose, conjugate};
+use crate::math::rotation::{self, compose, conjugate};
 use crate::math::scalar::{lift3, unit};
 use crate::math::{Scalar, Vec3};
 use crate::model::Axes;
@@ -276,18 +276,28 @@ impl<S: Scalar> FunctionBuilder<'_, S> {
             self.assembly.pose(body),
             self.assembly.pose(other.unwrap_or(GROUND)),
         );
+        let placed = compose(&conjugate(&seen_from.orientation), &own.orientation);
+        let seen = seen_from.rotation.tr_mul(&unit(axis));
+        let from = from.unwrap_or_default();
+        let turn = starting_turn(
+            self.document,
+            self.assembly,
+            [other.unwrap_or(GROUND), body],
+            &axis,
+        );
+        let before = match from {
+            CountedFrom::Axes => rotation::twist(&placed, &seen).re(),
+            CountedFrom::Placement => 0.0,
+        };
         Rotation {
             body: self.body(body),
             relative_to: other.and_then(|other| self.assembly.index(other)),
-            axis: seen_from.rotation.tr_mul(&unit(axis)),
-            placed: match from.unwrap_or_default() {
+            axis: seen,
+            placed: match from {
                 CountedFrom::Axes => None,
-                CountedFrom::Placement => Some(compose(
-                    &conjugate(&own.orientation),
-                    &seen_from.orientation,
-                )),
+                CountedFrom::Placement => Some(conjugate(&placed)),
             },
-            first: None,
+            first: turn.map(|turn| turn + before),
         }
     }
 

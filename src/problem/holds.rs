@@ -6,12 +6,13 @@
 //! clamped at the first edge that is rigid.
 
 use super::schema::Document;
-use super::schema::elements::{ElementBasis, Elements, Held};
+use super::schema::elements::{ElementBasis, ElementFrame, Elements, Held};
 use super::schema::joints::{Joint, JointPlace};
 use super::schema::mechanics::Point;
 use crate::math::Vec3;
 use crate::structures::floating::FrameNodes;
 use crate::structures::mesh::Mesh;
+use std::collections::BTreeSet;
 
 /// The nodes of a set of nodes or of an edge.
 pub(crate) fn nodes_of(mesh: &Mesh, set: &str) -> Option<Vec<usize>> {
@@ -104,6 +105,22 @@ pub(super) fn axes(
         Some(chord) => FrameNodes::Chord(chord),
         None => given,
     }
+}
+
+/// The set of nodes that keep their places among each other because axes are clamped there, and for no other reason.
+pub(super) fn rigid_by_axes<'a>(elements: &'a Elements, mesh: &Mesh) -> Option<&'a str> {
+    let ElementFrame::Clamped(set) = &elements.frame else {
+        return None;
+    };
+    let all =
+        |set: &str| -> BTreeSet<usize> { nodes_of(mesh, set).into_iter().flatten().collect() };
+    let clamped = all(set);
+    let reduced = matches!(elements.basis, ElementBasis::Reduced(_));
+    let elsewhere = elements.points.iter().any(|(name, held)| {
+        !matches!(held, Held::Node(_))
+            && (all(held.set()) == clamped || (reduced && is_rigid(elements, name)))
+    });
+    (clamped.len() > 1 && !elsewhere).then_some(set)
 }
 
 /// Three nodes of the elements at a straight edge: its ends, and one off its line.

@@ -130,26 +130,12 @@ pub(super) fn at<S: Scalar>(
     }
 }
 
-/// The angle with which a joint starts, by the file or a drive \[rad\].
-pub(super) fn starting_angle<S: Scalar>(
+/// The drives of the joint `name`.
+pub(super) fn drives<S: Scalar>(
     document: &Document,
     assembly: &Assembly<S>,
     name: &str,
-) -> Option<f64> {
-    let turns = DegreeOfFreedom::Rotation;
-    let start = document.joints[name].start();
-    let [given, _] = start.and_then(|start| start.of(turns)).unwrap_or_default();
-    let given = given.map(|angle| assembly.quantity(&angle));
-    let driven = || {
-        let mut drives = drives(document, assembly, name).into_iter();
-        let drive = drives.find(|drive| drive.dof == turns)?;
-        Some(drive.course.value(S::zero()))
-    };
-    given.or_else(driven).map(|angle| angle.re())
-}
-
-/// The drives of the joint `name`.
-fn drives<S: Scalar>(document: &Document, assembly: &Assembly<S>, name: &str) -> Vec<Drive<S>> {
+) -> Vec<Drive<S>> {
     let of = |drive: &&WrittenDrive| drive.joint == name;
     let parts = |drive: &WrittenDrive| {
         let turn = drive.turn.as_ref().map(|turn| Drive {

@@ -24,6 +24,7 @@ mod loads;
 mod mass;
 mod memory;
 mod modal;
+mod notes;
 mod overrides;
 mod parts;
 mod placement;
@@ -39,6 +40,7 @@ mod schema;
 mod section;
 mod source;
 mod start_rates;
+mod starting_angles;
 mod starts;
 mod statics;
 mod structure;
@@ -64,14 +66,13 @@ use crate::functions::{Function, Scene};
 use crate::integrate::{self, Spacing};
 use crate::lower::Lowering;
 use crate::math::{Scalar, Vec3};
-use crate::model::rigid_body::{ROUNDING, excess_of_inertia};
 use crate::model::{ConstraintRow, Fit};
 use crate::optimiser::Method;
 use crate::structures::loads::Load;
 use crate::structures::quality::MeshFault;
 use crate::structures::structure::Structure;
 use crate::system::equilibrium;
-use crate::system::left_out::{self, Redundancy};
+use crate::system::left_out::Redundancy;
 use schema::{Document, View};
 use std::path::Path;
 use std::sync::Arc;
@@ -399,25 +400,6 @@ impl Problem {
         self.written.input_tolerance()
     }
 
-    /// What is left out, or used though it does not fit, at the start: redundant rows of joints, and
-    /// inertias of no solid within the tolerance of the input.
-    pub(crate) fn notes_of_input(&self) -> Vec<String> {
-        let mut notes = left_out::told(&self.redundant);
-        let start = self.start();
-        notes.extend(self.written.bodies.iter().filter_map(|(name, body)| {
-            body.inertia.as_ref()?;
-            let excess = excess_of_inertia(&mass::mass_properties(body, &start).inertia);
-            (excess > ROUNDING).then(|| {
-                format!(
-                    "body \"{name}\": a principal moment of inertia is above the sum of the others by {excess:.1e} of it \
-                     (\"input_tolerance\" {:e}), and is used as it is",
-                    self.input_tolerance()
-                )
-            })
-        }));
-        notes
-    }
-
     /// By body: velocity [m/s] and angular velocity [rad/s] in ground axes, if the file gives them
     /// for this body and starts of joints may replace them.
     pub(crate) fn own_velocities(&self, x: &[f64]) -> Vec<Option<[Vec3<f64>; 2]>> {
@@ -457,6 +439,14 @@ impl Problem {
     /// [`Self::with_richer_bases`].
     pub(crate) fn with_all_nodes(&self, x: &[f64]) -> Option<Self> {
         self.with_bases(x, reduced::keep_all_nodes)
+    }
+
+    /// The problem with all nodes of such bodies and more functions of beams. `None` as of [`Self::with_richer_bases`].
+    pub(crate) fn with_finer_bodies(&self, x: &[f64]) -> Option<Self> {
+        self.with_bases(x, |document| {
+            let nodes = reduced::keep_all_nodes(document);
+            beam::enrich(document) || nodes
+        })
     }
 
     /// The problem with bases that `change` has changed, made at the design `x`.

@@ -213,3 +213,58 @@ fn derivatives_of_wound_springs_are_exact() {
         assert_eq!(gradients(&problem), gradients(&small), "{simulation}");
     }
 }
+
+/// Rotations count the turns of starts and drives between the bodies, as angles do: from the placement and from parallel
+/// axes, against ground and against another body, about the axis to either side.
+#[test]
+fn rotations_count_the_turns_of_starts_and_drives() {
+    let inertia = json!({"xx": 2, "yy": 2, "zz": 2});
+    for (first, second, axis, placed) in [
+        (7.0, 9.0, [0.0, 0.0, 1.0], 0.0),
+        (-20.0, 3.0, [0.0, 0.0, -1.0], 0.4),
+        (13.0, -13.0, [1.0, -2.0, 0.5], 0.0),
+        (4.0 * PI, 0.5, [0.0, 1.0, 0.0], -0.9),
+        (2.0, -8.0, [-1.0, 0.0, 0.3], 1.2),
+        (100.0, 40.0, [0.3, 0.2, 1.0], 0.0),
+    ] {
+        let back = axis.map(|x: f64| -x);
+        let rotation = |body: &str, axis: [f64; 3], other: &str, from: &str| json!({"final": {"rotation": {"body": body, "axis": axis, "relative_to": other, "from": from}}});
+        let document = json!({
+            "version": 1, "name": "discs", "gravity": [0, 0, 0],
+            "bodies": {
+                "near": {"mass": 1, "inertia": inertia, "place": {"turn": {"axis": axis, "angle": placed}}},
+                "far": {"mass": 1, "inertia": inertia}
+            },
+            "joints": {
+                "a": {"revolute": {"between": ["ground", "near"], "at": [0, 0, 0], "axis": axis}},
+                "b": {"cylindrical": {"between": ["far", "near"], "at": [0, 0, 0], "axis": back,
+                    "start": {"turn": {"angle": second, "rate": 2}}}}
+            },
+            "drives": {"d": {"joint": "a", "turn": {"polynomial": [first, 1]}}},
+            "simulation": {"duration": 1},
+            "functions": {
+                "near": rotation("near", axis, "ground", "placement"),
+                "near from axes": rotation("near", axis, "ground", "axes"),
+                "far": rotation("far", axis, "ground", "placement"),
+                "far of near": rotation("far", axis, "near", "placement"),
+                "near of far, back": rotation("near", back, "far", "axes")
+            }
+        });
+        // An angle is that of the joint's first body against the second, and ground counts as the second.
+        let near = first + 1.0;
+        let relative = -(second + 2.0);
+        let exact = [
+            near,
+            near + placed,
+            near + relative,
+            relative,
+            relative - placed,
+        ];
+        for (found, exact) in values(&document).iter().zip(exact) {
+            assert!(
+                (found - exact).abs() < 1e-6,
+                "{first} {second}: {found} {exact}"
+            );
+        }
+    }
+}

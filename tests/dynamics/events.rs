@@ -78,6 +78,63 @@ fn the_first_of_several_events_counts() {
     );
 }
 
+/// A slider driven at 0.5 m/s pulls the foot of a rod of length L whose end slides up a wall: at height −c below its start
+/// after T = √(1 − (1 − c)²)/0.5 s (L = 1 m), while the rod would be at its dead point after 2 s. The end of the motion
+/// that is waited for does not matter, by any method.
+#[test]
+fn an_event_comes_before_a_motion_that_fails_later() {
+    let inertia = json!({"xx": 1, "yy": 1, "zz": 1});
+    for (simulation, fall) in [
+        (json!({"duration": 4}), 0.2_f64),
+        (json!({"duration": 40}), 0.6),
+        (
+            json!({"duration": 2.5, "tolerance": 1e-7, "method": {"radau": {"stages": 3}}}),
+            0.2,
+        ),
+        (
+            json!({"duration": 4, "steps": 400, "method": "dop853"}),
+            0.2,
+        ),
+        (
+            json!({"duration": 4, "steps": 400, "method": {"radau": {"stages": 3}}}),
+            0.4,
+        ),
+        (
+            json!({"duration": 3, "steps": 400, "method": {"bdf": {"order": 2}}}),
+            0.3,
+        ),
+        (
+            json!({"duration": 4, "steps": 400, "method": {"generalised_alpha": {"radius": 0.8}}}),
+            0.2,
+        ),
+    ] {
+        let mut simulation = simulation;
+        simulation["until"] = json!({"measure": {"slide": {"joint": "wall"}}, "reaches": -fall});
+        let document = json!({
+            "version": 1, "name": "ladder", "gravity": [0, 0, 0],
+            "bodies": {
+                "foot": {"mass": 1, "inertia": inertia},
+                "top": {"mass": 1, "inertia": inertia, "place": {"at": [0, 1, 0]}}
+            },
+            "joints": {
+                "floor": {"prismatic": {"between": ["foot", "ground"], "at": [0, 0, 0], "axis": [1, 0, 0]}},
+                "wall": {"prismatic": {"between": ["top", "ground"], "at": [0, 1, 0], "axis": [0, 1, 0]}},
+                "ladder": {"rod": {"between": ["foot", "top"], "at": [[0, 0, 0], [0, 1, 0]]}}
+            },
+            "drives": {"pull": {"joint": "floor", "slide": {"rate": 0.5}}},
+            "simulation": simulation, "functions": {"T": "duration"}
+        });
+        let problem = problem(&document);
+        let at = Evaluated::new(&problem, &problem.start()).expect("runs");
+        let exact = 2.0 * (1.0 - (1.0 - fall) * (1.0 - fall)).sqrt();
+        assert!(
+            (at.run.duration / exact - 1.0).abs() < 1e-6,
+            "{simulation}: {}",
+            at.run.duration
+        );
+    }
+}
+
 #[test]
 fn an_event_that_does_not_come_is_named() {
     let until = json!({"measure": height(), "reaches": 2});

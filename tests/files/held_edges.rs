@@ -21,13 +21,19 @@ fn sets() -> Value {
 /// A body whose edge x0 is held as `held` by a joint to ground, in these axes. Gives its tip along (1, 2, 3) and its
 /// strain energy in equilibrium under a load along the edge x1.
 fn held(mesh: &Value, frame: Value, held: Value, basis: Value, joint: Value) -> [f64; 2] {
-    let document = json!({
+    let points = json!({"root": held, "tip": {"node": "q"}});
+    let motion = run(&elements(mesh, frame, points, basis, joint));
+    [0, 1].map(|k| motion.at.function(k).value)
+}
+
+fn elements(mesh: &Value, frame: Value, points: Value, basis: Value, joint: Value) -> Value {
+    json!({
         "version": 1, "name": "edge", "gravity": [0, 0, 0], "start": "equilibrium",
         "materials": {"al": {"young": E, "poisson": 0.3, "density": 2700}},
         "bodies": {"s": {
             "elements": {
                 "structure": {"mesh": mesh, "material": "al", "thickness": 0.008, "sets": sets()},
-                "frame": frame, "basis": basis, "points": {"root": held, "tip": {"node": "q"}}
+                "frame": frame, "basis": basis, "points": points
             },
             "place": {"put": [0, 0, 0], "at": [0, 0, 0]}
         }},
@@ -38,9 +44,7 @@ fn held(mesh: &Value, frame: Value, held: Value, basis: Value, joint: Value) -> 
             "z": {"final": {"position": {"body": "s", "point": "tip", "direction": [1, 2, 3]}}},
             "U": {"final": {"strain_energy": {"body": "s"}}}
         }
-    });
-    let motion = run(&document);
-    [0, 1].map(|k| motion.at.function(k).value)
+    })
 }
 
 fn weld() -> Value {
@@ -226,5 +230,63 @@ fn a_rigid_edge_is_a_support() {
         let moving = held(&mesh, frame, json!({"rigid": "x0"}), json!("full"), weld());
         let rest = rest * factor * factor;
         assert!((moving[1] / rest - 1.0).abs() < 1e-3, "{moving:?} {rest}");
+    }
+}
+
+/// Axes that are clamped at an edge which no point holds make it rigid, and a note says so: of an edge that is free, or
+/// held by single nodes. No note where a point holds the edge, where one node is clamped, in chord axes, nor where a
+/// reduced basis is clamped at a rigid edge.
+#[test]
+fn an_edge_that_axes_alone_make_rigid_is_told() {
+    let told = |frame: &Value, points: Value, basis: Value, joint: Value| {
+        let mut document = elements(&plate(), frame.clone(), points, basis, joint);
+        document["loads"] = json!({});
+        document["functions"] = json!({"U": {"final": {"strain_energy": {"body": "s"}}}});
+        parsed(&document).notes_of_input().join("\n")
+    };
+    let x0 = json!({"clamped": "x0"});
+    let full = json!("full");
+    let ball = json!({"spherical": {"between": ["s", "ground"], "at": "s.root"}});
+    let at = |held: Value| json!({"root": held, "tip": {"node": "m"}});
+    for (frame, held, joint) in [
+        (&x0, json!({"rigid": "x1"}), weld()),
+        (&x0, json!({"mean": "y0"}), weld()),
+        (&x0, json!({"edge": "y1"}), ball.clone()),
+        (&x0, json!({"node": "x0y0"}), ball.clone()),
+        (&json!({"clamped": "y1"}), json!({"rigid": "x0"}), weld()),
+        (
+            &json!({"clamped": "x1"}),
+            json!({"mean": "x0"}),
+            ball.clone(),
+        ),
+    ] {
+        let notes = told(frame, at(held), full.clone(), joint);
+        let set = frame["clamped"].as_str().unwrap_or_default();
+        assert!(
+            notes.contains(&format!("clamped at \"{set}\"")),
+            "{frame}: {notes}"
+        );
+    }
+    let reduced = json!({"reduced": {"modes": 2}});
+    for (frame, held, basis, joint) in [
+        (&x0, json!({"rigid": "x0"}), &full, weld()),
+        (&x0, json!({"mean": "x0"}), &full, weld()),
+        (&x0, json!({"edge": "x0"}), &full, weld()),
+        (&x0, json!({"edge": "x0"}), &full, ball),
+        (
+            &json!({"chord": ["p", "q", "x0y0"]}),
+            json!({"rigid": "x0"}),
+            &full,
+            weld(),
+        ),
+        (
+            &json!({"clamped": "y0"}),
+            json!({"rigid": "x0"}),
+            &reduced,
+            weld(),
+        ),
+    ] {
+        let notes = told(frame, at(held), basis.clone(), joint);
+        assert_eq!(notes, "", "{frame}");
     }
 }

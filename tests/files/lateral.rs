@@ -4,7 +4,7 @@
 use super::statics::solved_at;
 use crate::tests::reference::documents::{problem as parsed, run, value};
 use crate::tests::reference::gradients::gradients_are_exact;
-use flexbody::driver::start;
+use flexbody::driver::{Evaluated, bases, start};
 use serde_json::Value;
 
 const LENGTH: f64 = 1.0;
@@ -185,5 +185,64 @@ fn gradients_near_lateral_buckling_are_exact() {
         }
         let problem = parsed(&document);
         gradients_are_exact(&problem, &document);
+    }
+}
+
+/// The error of the functions of a beam is that against more of them: near the critical load the default ones, and poorer
+/// ones, are far off, and the error says by how much to a factor of three.
+#[test]
+fn errors_of_functions_are_those_against_more() {
+    for (frame, modes, part) in [
+        ("clamped", [4, 4, 2], 0.85),
+        ("chord", [4, 4, 2], 0.85),
+        ("clamped", [4, 4, 2], 0.5),
+        ("clamped", [3, 3, 2], 0.7),
+        ("chord", [3, 4, 1], 0.8),
+        ("clamped", [4, 4, 1], 0.9),
+        ("chord", [2, 3, 2], 0.6),
+    ] {
+        let problem = parsed(&moving(&by_functions(frame, modes), part));
+        let at = Evaluated::new(&problem, &problem.start()).expect("runs");
+        let found = bases::errors(&problem, &at, &[1]).expect("runs");
+        let off = (found[0].value - at_rest(part)).abs();
+        let ratio = off / found[0].error();
+        println!(
+            "{frame} {modes:?} {part}: {off:.2e} of {:.2e}, {ratio}",
+            found[0].value
+        );
+        assert!(
+            ratio > 1.0 / 3.0 && ratio < 3.0,
+            "{frame} {modes:?}: {ratio}"
+        );
+    }
+}
+
+/// More functions leave a given start as it is: its kinetic and its strain energy, of twists so small that Wagner's strain
+/// is not seen.
+#[test]
+fn more_functions_keep_the_start() {
+    for (modes, coordinates) in [
+        ([2, 2, 1], vec![1e-3, 2e-3, 3e-3, -1e-3, 0.02, 1e-6]),
+        ([1, 3, 0], vec![1e-3, 2e-3, 3e-3, -1e-3, 2e-6]),
+        ([0, 2, 2], vec![4e-3, 2e-3, 1e-4, 3e-4, 1e-6]),
+        ([3, 0, 0], vec![1e-3, 2e-3, -5e-3, 1e-6]),
+        ([2, 1, 2], vec![1e-3; 6]),
+        ([0, 0, 3], vec![1e-4, -2e-4, 3e-4, 1e-6]),
+    ] {
+        let mut document = moving(&by_functions("clamped", modes), 0.0);
+        document["start"] = json!("given");
+        document["bodies"]["p"]["beam"]["modes"]["stretch"] = json!(1);
+        document["bodies"]["p"]["beam"]["start"] =
+            json!({"coordinates": coordinates, "rates": coordinates});
+        document["simulation"] =
+            json!({"duration": 1e-13, "steps": 1, "method": {"radau": {"stages": 2}}});
+        document["functions"] = json!({
+            "T": {"final": {"energy": "kinetic"}}, "U": {"final": {"strain_energy": {"body": "p"}}}
+        });
+        let problem = parsed(&document);
+        let at = Evaluated::new(&problem, &problem.start()).expect("runs");
+        for own in bases::errors(&problem, &at, &[0, 1]).expect("runs") {
+            assert!(own.error() < 1e-5 * own.value.abs(), "{modes:?}: {own:?}");
+        }
     }
 }

@@ -92,3 +92,30 @@ fn errors_of_vibrations_that_steps_do_not_follow_are_not_known() {
     let adaptive = json!({"duration": 0.01, "tolerance": 1e-6});
     assert!(!unknown(&beam(z, 0.0, 7e10, &adaptive)));
 }
+
+/// Vibrations that damping ends within a few steps leave errors known; those that it hardly damps do not.
+#[test]
+fn errors_are_known_where_damping_ends_vibrations() {
+    for (method, steps, axis) in [
+        (json!({"radau": {"stages": 3}}), 40, [0.0, 0.0, 1.0]),
+        (json!({"radau": {"stages": 3}}), 36, [0.0, 0.6, 0.8]),
+        (json!({"radau": {"stages": 2}}), 30, [0.0, 0.0, 1.0]),
+        (json!({"radau": {"stages": 2}}), 40, [0.36, 0.48, 0.8]),
+        (json!({"bdf": {"order": 2}}), 30, [0.0, 0.0, 1.0]),
+        (
+            json!({"generalised_alpha": {"radius": 0.5}}),
+            60,
+            [0.6, 0.0, 0.8],
+        ),
+    ] {
+        let run = json!({"duration": 0.3, "steps": steps, "method": method});
+        let known = [4e-3, 1e-7].map(|stiffness| {
+            let mut file = beam(axis, 0.0, 7e10, &run);
+            file["bodies"]["b"]["beam"]["damping"] = json!({"stiffness": stiffness});
+            let problem = problem(&file);
+            let at = Evaluated::new(&problem, &problem.start()).expect("runs");
+            unfollowed(&problem, &at).is_none()
+        });
+        assert_eq!(known, [true, false], "{run} {axis:?}");
+    }
+}
