@@ -4,11 +4,11 @@ use super::evaluate::{Evaluated, release_weights, sample_with, turn};
 use super::flight::Flight;
 use super::function::{Function, Reduction, Release};
 use super::instant::Instant;
-use super::peak;
+use super::peak::{self, Maximum};
 use super::snapshot::Snapshot;
 use super::turning::turns;
 use crate::integrate::Trajectory;
-use crate::math::soft_max::{Smoothed, smoothed};
+use crate::math::soft_max::{Smoothed, ZERO, smoothed};
 use crate::model::Model;
 
 /// What a function of a run stands for; `None` if nothing in it is smoothed. `found` is its value.
@@ -23,6 +23,11 @@ pub(crate) fn of_motion(
         return None;
     }
     let (value, scale) = match (found.maximum, function) {
+        (Some(Maximum { value, .. }), Function::Reduced { instant, .. })
+            if value.abs() < ZERO * found.value.abs() =>
+        {
+            (value, size(instant, model, run))
+        }
         (Some(maximum), _) => (maximum.value, maximum.value.abs()),
         (None, Function::Clearance { top, .. }) => {
             let value = best_clearance(function, model, run)?;
@@ -83,6 +88,14 @@ fn sharpened(function: &Function<f64>, factor: f64) -> Function<f64> {
         Function::Duration | Function::OfDesign { .. } => {}
     }
     out
+}
+
+/// The largest absolute value of a quantity.
+fn size(instant: &Instant<f64>, model: &Model<f64>, run: &Trajectory<f64>) -> f64 {
+    let turns = turns(instant.watched_rotation(), run);
+    let value = |at: &Snapshot<f64>, turns| instant.value_and_largest(at, turns).1.abs();
+    let values = sample_with(instant, &turns, (model, run), 0..=run.last(), value);
+    values.into_iter().fold(0.0, f64::max)
 }
 
 /// The value at the end or the integral, with the largest value of all points at each instant.

@@ -75,6 +75,10 @@ const NEAR: f64 = 0.01;
 /// Largest number of parameters that are tried, and the ratio of two of them that are close enough.
 const TRIALS: usize = 20;
 const CLOSE: f64 = 1.2;
+/// A true value below this part of the size of what is smoothed is zero.
+pub(crate) const ZERO: f64 = 1e-6;
+/// Above this factor the samples decide which value is smoothed.
+const SHARPEST: f64 = 1e7;
 
 /// What a smooth aggregate stands for.
 #[derive(Clone, Debug, PartialEq)]
@@ -88,8 +92,10 @@ pub(crate) struct Smoothed {
 /// An aggregate that is not near its true value.
 #[derive(Clone, Debug, PartialEq)]
 pub(crate) struct Far {
-    /// The difference, relative to the true value.
+    /// The difference, relative to the true value, or to the size of what is smoothed if the true value is zero.
     pub part: f64,
+    /// Whether the true value is zero.
+    pub of_zero: bool,
     /// Parameters ρ that would leave at most 1 % of it, if some are known.
     pub rho: Option<Vec<f64>>,
 }
@@ -98,8 +104,13 @@ impl std::fmt::Display for Far {
     fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
         write!(
             f,
-            "the aggregate differs from it by {:.2} %",
-            100.0 * self.part
+            "the aggregate differs from it by {:.2} %{}",
+            100.0 * self.part,
+            if self.of_zero {
+                " of the largest size"
+            } else {
+                ""
+            }
         )?;
         let Some(rho) = &self.rho else {
             return write!(
@@ -147,13 +158,17 @@ pub(crate) fn smoothed(
             break;
         }
     }
-    let rho = near.is_finite().then(|| {
+    let rho = (near < SHARPEST).then(|| {
         let sharper = rho.iter().map(|rho| two_digits(rho * near));
         sharper.collect()
     });
     Smoothed {
         value,
-        far: Some(Far { part, rho }),
+        far: Some(Far {
+            part,
+            of_zero: value.abs() < ZERO * scale,
+            rho,
+        }),
     }
 }
 
@@ -202,6 +217,20 @@ mod tests {
         // What no ρ brings near, and a scale of zero.
         let never = smoothed(2.0, (1.0, 1.0), vec![1.0], |_| 2.0);
         assert_eq!(never.far.expect("it is far").rho, None);
+        let late = smoothed(2.0, (1.0, 1.0), vec![1.0], |factor| {
+            if factor < 1e12 { 2.0 } else { 1.0 }
+        });
+        assert_eq!(late.far.expect("it is far").rho, None);
+        // A true value of zero, beside a quantity of the size 3.
+        let zero = smoothed(-0.9, (0.0, 3.0), vec![1.0], |factor| -0.9 / factor);
+        let far = zero.far.expect("it is far");
+        assert!(far.of_zero && (far.part - 0.3).abs() < 1e-15, "{far}");
+        assert!(
+            far.rho
+                .as_ref()
+                .is_some_and(|rho| rho[0] >= 30.0 && rho[0] < 45.0),
+            "{far}"
+        );
         assert_eq!(smoothed(2.0, (0.0, 0.0), vec![1.0], |_| 2.0).far, None);
     }
 

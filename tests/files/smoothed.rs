@@ -128,3 +128,36 @@ fn aggregates_in_motion_have_their_true_values() {
         .filter(|(_, own)| own.as_ref().is_some_and(|own| own.far.is_some()));
     assert!(far.count() >= 5, "{soft:?}");
 }
+
+/// A maximum of zero has no size of its own: how far the aggregate of a body that flies away is from it is told beside the
+/// largest distance v T, in any axes, by any aggregate and unit; and the ρ that is told leaves 1 % of this.
+#[test]
+fn maxima_of_zero_are_told_beside_the_size() {
+    for (kind, axis, speed, rho) in [
+        ("ks", [1.0, 0.0, 0.0], 3.0, 2.0),
+        ("ks", [0.0, -0.6, 0.8], 3.0, 2.0),
+        ("ks", [0.36, 0.48, 0.8], 3e-3, 2e3),
+        ("induced_exponential", [0.0, 1.0, 0.0], 3e4, 1e-4),
+        ("induced_exponential", [-0.48, 0.6, 0.64], 3.0, 5.0),
+        ("ks", [0.0, 0.0, 1.0], 1e6, 1e-6),
+    ] {
+        let file = |rho: f64| {
+            json!({
+                "version": 1, "name": "away", "gravity": [0, 0, 0],
+                "bodies": {"m": {"mass": 1, "inertia": {"xx": 1, "yy": 1, "zz": 1},
+                    "velocity": {"linear": axis.map(|x: f64| -speed * x), "angular": [0, 0, 0]}}},
+                "simulation": {"duration": 1},
+                "functions": {"f": {kind: {"rho": rho, "of": {"position": {"body": "m", "direction": axis}}}}}
+            })
+        };
+        let (value, smoothed) = in_motion(&file(rho)).remove(0);
+        let far = smoothed.expect("an aggregate").far.expect("it is far");
+        assert!(far.of_zero, "{far}");
+        let part = value.abs() / speed;
+        assert!((far.part - part).abs() < 1e-9 * part, "{far}: {part}");
+        let sharp = far.rho.clone().expect("one is known")[0];
+        let (value, smoothed) = in_motion(&file(sharp)).remove(0);
+        assert!(value.abs() <= 0.01 * speed, "{value} {far}");
+        assert_eq!(smoothed.expect("an aggregate").far, None);
+    }
+}
