@@ -2,7 +2,7 @@
 
 use super::analysed::{AnalysisFailure, Simulated, notes_of_start};
 use super::evaluator::unscaled;
-use crate::optimiser::{self, Outcome, Status};
+use crate::optimiser::{self, Method, Outcome, Status};
 use crate::problem::{Problem, Sense};
 use crate::report::evaluations::Work;
 use crate::report::optimum::{
@@ -77,7 +77,15 @@ pub(super) fn record(
     (work, refreshes): (Work, usize),
     (start, end): (&Result<Simulated, AnalysisFailure>, Option<&Simulated>),
 ) -> Optimum {
-    let (status, sentence) = verdict(&outcome.status);
+    let (status, mut sentence) = verdict(&outcome.status);
+    if let Some(other) = &outcome.other {
+        let (own, replaced) = match outcome.method {
+            Method::TrustRegion => ("trust region", "interior point"),
+            Method::InteriorPoint | Method::Auto => ("interior point", "trust region"),
+        };
+        let (_, why) = verdict(other);
+        sentence += &format!(" (by the {own}; the {replaced} ended so: {why})");
+    }
     let x = unscaled(problem, &outcome.x);
     let objective = problem
         .objective

@@ -86,6 +86,9 @@ pub struct Outcome {
     pub status: Status,
     /// The method that found this end; of both methods of [`Method::Auto`] one.
     pub method: Method,
+    /// How the other method of [`Method::Auto`] ended, if both ran.
+    #[serde(default)]
+    pub other: Option<Box<Status>>,
     /// The best point.
     pub x: Vec<f64>,
     /// Objective there.

@@ -129,6 +129,8 @@ pub(crate) struct Program<'a> {
     pub(crate) first: Option<(DVector<f64>, f64)>,
     /// Best point reported: feasible with the least objective, or least infeasible.
     pub best: Option<Point>,
+    /// How a method ended whose end another one replaces, or could not.
+    pub other: Option<Status>,
 }
 
 impl<'a> Program<'a> {
@@ -207,6 +209,7 @@ impl<'a> Program<'a> {
             },
             first: None,
             best: None,
+            other: None,
         }
     }
 

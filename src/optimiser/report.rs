@@ -59,6 +59,7 @@ pub(crate) fn outcome(program: &Program<'_>, finish: FinalIterate, state: SavedS
     Outcome {
         status,
         method,
+        other: program.other.clone().map(Box::new),
         objective: point.f / program.scaling.objective,
         active_bounds: active(&x, (&lower, &upper), of_bound, (|_| 1.0, gradient), |i| {
             nlp.variable_name(i)
@@ -98,6 +99,7 @@ pub(crate) fn untried(nlp: &dyn Nlp, status: Status) -> Outcome {
     Outcome {
         status,
         method: Method::default(),
+        other: None,
         x: nlp.start(),
         objective: f64::NAN,
         constraints: vec![f64::NAN; nlp.constraints()],

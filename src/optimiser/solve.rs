@@ -289,8 +289,13 @@ fn auto(
             Status::Degenerate { .. } => next.status != Status::Converged,
             _ => false,
         };
-        if !keep {
-            kept = next;
+        let (ended, replaced) = match keep {
+            true => (kept, next),
+            false => (next, kept),
+        };
+        kept = ended;
+        if kept.method != replaced.method {
+            program.other = Some(replaced.status);
         }
         kept.restore_units(program);
     }

@@ -361,6 +361,12 @@ fn one_method_stands_in_where_the_other_runs_out() {
     let both = solve(&mut spiral(), &within(Method::Auto, 600), &mut Silent);
     assert!(both.converged(), "{:?}", both.status);
     assert_eq!(both.method, Method::TrustRegion);
+    let interior = both.other.as_deref();
+    assert!(
+        interior.is_some_and(|status| *status != Status::Converged),
+        "{interior:?}"
+    );
+    assert_eq!(alone.other, None);
     assert!(both.objective.abs() <= 1e-6, "{}", both.objective);
     assert!(both.counts.evaluations <= 600, "{:?}", both.counts);
 }
