@@ -22,7 +22,7 @@ use super::event::{self, Admit};
 use super::integration::looks_at_the_whole;
 use crate::functions::between_samples;
 use crate::integrate::{
-    IntegrationFailure, Limits, Samples, Settings, Spacing, Trajectory, quadrature, simulate,
+    Grid, IntegrationFailure, Limits, Samples, Settings, Spacing, Trajectory, quadrature, simulate,
 };
 use crate::problem::Problem;
 
@@ -214,7 +214,7 @@ fn of_three(first: f64, second: f64, gain: f64) -> f64 {
 }
 
 /// Differences of functions and derivatives by doubled steps from those by the steps in use, with samples at the same
-/// instants; `None` of rigid scenes by methods of order three or more, and if steps have no pairs of one size.
+/// instants; `None` of rigid scenes by methods of order four or more, and of flexible ones if steps have no pairs of one size.
 fn doubled(
     problem: &Problem,
     at: &Evaluated,
@@ -223,12 +223,17 @@ fn doubled(
     numbers: &impl Fn(&Evaluated, &[usize]) -> Result<Vec<Vec<f64>>, IntegrationFailure>,
 ) -> Result<Option<Vec<Vec<f64>>>, IntegrationFailure> {
     let (run, cells) = (&at.run, at.run.has_cells);
+    let rigid = at.scene.model.flexible.is_empty();
+    let pairs = |grid: &Grid| match grid.paired() {
+        None if rigid => grid.doubled(),
+        equal => equal,
+    };
     let grid = match cells && !summed.is_empty() {
-        true => run.grid.with_double_cells().paired(),
-        false => run.grid.paired(),
+        true => pairs(&run.grid.with_double_cells()),
+        false => pairs(&run.grid),
     };
     // A difference that is small by chance tells by the other one; by methods of high order that would claim too much.
-    let told = !at.scene.model.flexible.is_empty() || run.method.order() <= 3;
+    let told = !rigid || run.method.order() <= 3;
     let Some(grid) = grid.filter(|_| told) else {
         return Ok(None);
     };

@@ -18,6 +18,7 @@ use super::prune::prune;
 use super::schema::{self, Document};
 use super::source::{Duplicate, Source};
 use super::statics::expand::expand;
+use super::statics::per_thickness;
 use super::statics::{Asked, Statics};
 use super::structure::walk;
 use super::syntax;
@@ -122,7 +123,9 @@ pub(super) fn parse(written: &str, file: &str, overrides: &[Override]) -> Result
     let shells = written.bodies.values().any(|body| body.elements.is_some());
     let variables = match written.structures.is_empty() && !shells {
         true => variables,
-        false => match expand(&written, &mut sound, variables) {
+        false => match per_thickness::expand(&written, &mut sound)
+            .and_then(|()| expand(&written, &mut sound, variables))
+        {
             Ok(variables) => variables,
             Err(finding) => return faults(vec![finding]),
         },

@@ -39,6 +39,7 @@ mod stability;
 mod static_faults;
 mod statics;
 mod stationary;
+mod stress_per_thickness;
 mod stress_pictures;
 mod thickness_sheet;
 mod trebuchets;

@@ -6,7 +6,7 @@ use crate::problem::finding::Finding;
 use crate::problem::pointer::{advice, join};
 use crate::problem::schema::functions::Function;
 use crate::problem::schema::statics::{CaseLoad, Stress};
-use crate::problem::schema::structures::Material;
+use crate::problem::schema::structures::{Material, Structure, Thickness};
 use std::collections::BTreeSet;
 
 impl Checker<'_> {
@@ -160,6 +160,20 @@ impl Checker<'_> {
         let shells = shells
             .filter(|structure| !structure.mesh.is_of_beams())
             .count();
+        if stress.per.is_some() {
+            let varied =
+                |structure: &Structure| matches!(structure.thickness, Some(Thickness::Varied(_)));
+            let several = self.document.structures.values().any(varied);
+            let place = join(pointer, "per");
+            if stress.elements.is_some() {
+                let found = "a set of elements beside it";
+                self.fault(Finding::new(place, found, "\"per\" or \"elements\"").of_key());
+            } else if !several && !self.damage.touches("structures") {
+                let found = "structures of one thickness each";
+                let expected = "a thickness \"per\" element, band, patch or group";
+                self.fault(Finding::new(place, found, expected).of_key());
+            }
+        }
         match &stress.elements {
             Some(set) => self.set(&join(pointer, "elements"), set, Kind::Faces),
             None if shells == 0 && !self.sets.unknown => {

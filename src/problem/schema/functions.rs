@@ -65,6 +65,14 @@ pub(crate) enum OfMotion<'a> {
 }
 
 impl Function {
+    /// The stress of structures, if it is one.
+    pub(crate) fn stress(&self) -> Option<&Stress> {
+        match self {
+            Self::VonMises(stress) => Some(stress),
+            _ => None,
+        }
+    }
+
     /// The function, if it is one of a motion and not of structures.
     pub(crate) fn of_motion(&self) -> Option<OfMotion<'_>> {
         match self {

@@ -123,6 +123,16 @@ pub(crate) struct Stress {
     pub cases: Option<Vec<String>>,
     /// Name of the set of elements, default all.
     pub elements: Option<String>,
+    /// "thickness": an aggregate for each thickness of the structures; a constraint then limits each.
+    pub per: Option<StressPer>,
+}
+
+/// What has an aggregate of its own.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Deserialize, JsonSchema)]
+#[serde(rename_all = "snake_case")]
+pub(crate) enum StressPer {
+    /// All elements of one thickness: of an element, band, patch or group that the file names so, or of a structure.
+    Thickness,
 }
 
 /// A quantity of a load case.

@@ -3,6 +3,7 @@
 pub(crate) mod expand;
 mod functions;
 pub(crate) mod mesh;
+pub(crate) mod per_thickness;
 pub(crate) mod properties;
 mod pull_back;
 mod workspace;
@@ -136,6 +137,16 @@ impl Statics {
             return Err(wrong);
         }
         name_whole(&mut mesh);
+        if per_thickness::is_used(document) {
+            for (shell, &(s, slot)) in shells.iter().enumerate() {
+                let structure = document
+                    .structures
+                    .get_index(s)
+                    .map(|(name, _)| name.as_str());
+                let set = per_thickness::set(structure.unwrap_or_default(), slot);
+                mesh.face_sets.entry(set).or_default().push(shell);
+            }
+        }
         let study = document.statics.clone().unwrap_or_default();
         Ok(Self {
             topology: Arc::new(Topology::new(
