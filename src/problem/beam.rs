@@ -48,7 +48,7 @@ pub(crate) fn modes(beam: &Beam) -> BeamModes {
 pub(super) fn enrich(document: &mut Document) -> bool {
     let beams = document.bodies.values_mut();
     let beams = beams.filter_map(|body| body.beam.as_mut());
-    beams.fold(false, |changed, beam| richer(beam) || changed)
+    beams.filter_map(|beam| richer(beam).then_some(())).count() > 0
 }
 
 fn richer(beam: &mut Beam) -> bool {

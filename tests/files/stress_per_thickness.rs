@@ -88,6 +88,9 @@ fn every_thickness_has_its_stress() {
     }
 }
 
+/// A thickness, a change of the file, and the place and some words of its fault.
+type Case<'a> = (&'a Value, &'a dyn Fn(&mut Value), &'a str, &'a str);
+
 /// What does not go with it, by place and message.
 #[test]
 fn faults_name_the_place() {
@@ -101,7 +104,7 @@ fn faults_name_the_place() {
             .to_string()
     };
     let variable = |file: &mut Value| file["variables"] = json!({});
-    let cases: [(&Value, &dyn Fn(&mut Value), &str, &str); 6] = [
+    let cases: [Case<'_>; 6] = [
         (
             &json!(0.01),
             &variable,
