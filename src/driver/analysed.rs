@@ -1,5 +1,6 @@
 //! A design with the values of its functions: a motion, or structures under load cases.
 
+use super::alike::{Message, grouped};
 use super::evaluate::Evaluated;
 use super::integration::{Integration, Refresh};
 use super::simulate::{Simulation, simulate, simulate_with};
@@ -246,18 +247,22 @@ impl Simulated {
         }
     }
 
-    /// Warnings of functions whose aggregates are far from what they stand for; `when` says at which design.
+    /// Warnings of functions whose aggregates are far from what they stand for, one of a family; `when` says at which design.
     pub(super) fn far(&self, problem: &Problem, used: &[usize], when: &str) -> Vec<String> {
         let one = |&f: &usize| {
             let Smoothed { value, far } = self.smoothed(f)?;
             let name = &problem.function_names[f];
             let unit = problem.function_unit(f);
-            Some(format!(
-                "the true value of \"{name}\" {when} is {value:.6e} {unit}, and {}",
-                far?
-            ))
+            let far = far?;
+            Some(Message {
+                name: name.clone(),
+                size: far.part,
+                text: format!(
+                    "the true value of \"{name}\" {when} is {value:.6e} {unit}, and {far}"
+                ),
+            })
         };
-        used.iter().filter_map(one).collect()
+        grouped(used.iter().filter_map(one))
     }
 
     /// Errors of the functions `which`, and of their gradients if `gradients`.

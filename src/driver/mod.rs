@@ -2,6 +2,7 @@
 //! methods on it, and test extreme scenes.
 
 pub(crate) mod accuracy;
+mod alike;
 pub(crate) mod analysed;
 pub(crate) mod bases;
 pub(crate) mod certificate;

@@ -1,5 +1,6 @@
 //! The record of an optimisation: the optimiser's outcome in the user's names, signs and units.
 
+use super::alike::{Message, grouped};
 use super::analysed::{AnalysisFailure, Simulated, notes_of_start};
 use super::evaluator::unscaled;
 use crate::optimiser::{self, Method, Outcome, Status};
@@ -161,11 +162,10 @@ pub(super) fn record(
         (start.as_ref().ok(), end),
         (aggregate, error),
     );
-    warnings.extend(
-        constraints
-            .iter()
-            .filter_map(|(name, found)| beyond_margin(problem, name, found)),
-    );
+    let beyond = constraints.iter();
+    warnings.extend(grouped(
+        beyond.filter_map(|(name, found)| beyond_margin(problem, name, found)),
+    ));
     let scaling = &outcome.scaling;
     let zero = |names: &[String], what: &str| {
         (!names.is_empty()).then(|| format!("at the start {what}: {}", names.join(", ")))
@@ -307,7 +307,7 @@ fn constraints(
 
 /// A warning if the error of a constraint is larger than its distance from the bounds and than what the optimiser
 /// may violate.
-fn beyond_margin(problem: &Problem, name: &str, found: &ConstraintValue) -> Option<String> {
+fn beyond_margin(problem: &Problem, name: &str, found: &ConstraintValue) -> Option<Message> {
     let error = found.estimated_error?;
     let given = problem.optimiser.constraint_tolerance;
     let tolerance = given.unwrap_or(optimiser::Options::default().constraint_tolerance);
@@ -327,10 +327,16 @@ fn beyond_margin(problem: &Problem, name: &str, found: &ConstraintValue) -> Opti
         Some(_) => "a finer mesh",
         None => "a smaller tolerance or more steps",
     };
-    Some(format!(
+    let text = format!(
         "\"{name}\" may be violated: its estimated error of {error:.1e}{unit} exceeds its distance of \
          {margin:.1e}{unit} from the bound; take {finer}"
-    ))
+    );
+    let name = name.to_owned();
+    Some(Message {
+        name,
+        size: error,
+        text,
+    })
 }
 
 fn scaling_record(problem: &Problem, outcome: &Outcome) -> Scaling {
