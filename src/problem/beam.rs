@@ -46,9 +46,11 @@ pub(crate) fn modes(beam: &Beam) -> BeamModes {
 
 /// Gives every beam more functions of each kind that it has. False if there are no beams or none has fewer than it may.
 pub(super) fn enrich(document: &mut Document) -> bool {
-    let beams = document.bodies.values_mut();
-    let beams = beams.filter_map(|body| body.beam.as_mut());
-    beams.filter_map(|beam| richer(beam).then_some(())).count() > 0
+    let mut changed = false;
+    for beam in (document.bodies.values_mut()).filter_map(|body| body.beam.as_mut()) {
+        changed |= richer(beam);
+    }
+    changed
 }
 
 fn richer(beam: &mut Beam) -> bool {

@@ -154,7 +154,11 @@ impl<S: Scalar> FunctionBuilder<'_, S> {
             I::Rotation(rotation) => {
                 let axis = vector(&rotation.axis, self.x);
                 let other = rotation.relative_to.as_deref();
-                Instant::Rotation(self.rotation([Some(&rotation.body), other], axis, rotation.from))
+                Instant::Rotation(self.counted_rotation(
+                    [Some(&rotation.body), other],
+                    axis,
+                    rotation.from,
+                ))
             }
             I::Angle(angle) => Instant::Rotation(self.joint_angle(&angle.joint)),
             I::Range(range) => Instant::Range {
@@ -264,12 +268,25 @@ impl<S: Scalar> FunctionBuilder<'_, S> {
     }
 
     /// The rotation of the first body relative to the second or to ground, about an axis in ground
-    /// axes as placed.
+    /// axes as placed. It counts the turns of starts and drives of the joints between them.
+    fn counted_rotation(
+        &self,
+        bodies: [Option<&str>; 2],
+        axis: Vec3<S>,
+        from: Option<CountedFrom>,
+    ) -> Rotation<S> {
+        let [other, body] = [bodies[1], bodies[0]].map(|body| body.unwrap_or(GROUND));
+        let turn = starting_turn(self.document, self.assembly, [other, body], &axis);
+        self.rotation(bodies, axis, from, turn)
+    }
+
+    /// That rotation, where the start turns the bodies by `turn` from their placement, if that is known.
     fn rotation(
         &self,
         [body, other]: [Option<&str>; 2],
         axis: Vec3<S>,
         from: Option<CountedFrom>,
+        turn: Option<f64>,
     ) -> Rotation<S> {
         let body = body.expect("a rotation is that of a body");
         let (own, seen_from) = (
@@ -279,12 +296,6 @@ impl<S: Scalar> FunctionBuilder<'_, S> {
         let placed = compose(&conjugate(&seen_from.orientation), &own.orientation);
         let seen = seen_from.rotation.tr_mul(&unit(axis));
         let from = from.unwrap_or_default();
-        let turn = starting_turn(
-            self.document,
-            self.assembly,
-            [other.unwrap_or(GROUND), body],
-            &axis,
-        );
         let before = match from {
             CountedFrom::Axes => rotation::twist(&placed, &seen).re(),
             CountedFrom::Placement => 0.0,
@@ -311,13 +322,13 @@ impl<S: Scalar> FunctionBuilder<'_, S> {
         };
         let axis = joint.axes()[0].expect("a joint with an angle has an axis");
         let axis = self.assembly.axis(axis);
-        let mut rotation = self.rotation(bodies, axis, Some(CountedFrom::Placement));
+        let turn = starting_angle(self.document, self.assembly, name);
+        let mut rotation = self.rotation(bodies, axis, Some(CountedFrom::Placement), turn);
         // On beams it is that of the sections that the joint holds.
         let index = self.document.joints.get_index_of(name);
         let (own, other) = self.ends[index.expect("joints are checked")];
         rotation.body = own;
         rotation.relative_to = other;
-        rotation.first = starting_angle(self.document, self.assembly, name);
         rotation
     }
 
@@ -335,7 +346,7 @@ impl<S: Scalar> FunctionBuilder<'_, S> {
                 let axis =
                     axis.expect("a gate has an axis, which is checked when a problem is read");
                 let bodies = [gate.body.as_deref(), gate.relative_to.as_deref()];
-                self.rotation(bodies, lift3(&Vec3::from(axis)), gate.from)
+                self.counted_rotation(bodies, lift3(&Vec3::from(axis)), gate.from)
             }
         };
         Gate {

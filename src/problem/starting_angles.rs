@@ -42,6 +42,9 @@ pub(super) fn starting_turn<S: Scalar>(
     let mut turned = BTreeMap::from([(other, 0.0)]);
     let mut next = VecDeque::from([other]);
     while let Some(at) = next.pop_front() {
+        if at == body {
+            break;
+        }
         for (name, joint) in &document.joints {
             // Ground counts as the second body.
             let [a, b] = match joint.between().each_ref().map(String::as_str) {

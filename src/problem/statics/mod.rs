@@ -91,6 +91,7 @@ impl Statics {
         let (mut shells, mut beams, mut mass_nodes, mut masses) = (vec![], vec![], vec![], vec![]);
         let (mut material, mut beam_material) = (Vec::new(), Vec::new());
         let (mut supports, mut wrong) = (Vec::new(), Vec::new());
+        let per_thickness = per_thickness::is_used(document);
         for (s, (name, structure)) in document.structures.iter().enumerate() {
             let part = mesh::part(structure, x, cuts);
             let mut found = faults(&part.mesh, &part.nodes);
@@ -103,6 +104,12 @@ impl Statics {
             material.extend(std::iter::repeat_n(number, part.mesh.shells.len()));
             beam_material.extend(std::iter::repeat_n(number, part.mesh.beams.len()));
             let slots = slots(structure, &part);
+            if per_thickness {
+                for (shell, &slot) in slots.iter().take(part.mesh.shells.len()).enumerate() {
+                    let set = mesh.face_sets.entry(per_thickness::set(name, slot));
+                    set.or_default().push(shells.len() + shell);
+                }
+            }
             match part.mesh.shells.is_empty() {
                 false => shells.extend(slots.into_iter().map(|slot| (s, slot))),
                 true => beams.extend(slots.into_iter().map(|slot| (s, slot))),
@@ -137,16 +144,6 @@ impl Statics {
             return Err(wrong);
         }
         name_whole(&mut mesh);
-        if per_thickness::is_used(document) {
-            for (shell, &(s, slot)) in shells.iter().enumerate() {
-                let structure = document
-                    .structures
-                    .get_index(s)
-                    .map(|(name, _)| name.as_str());
-                let set = per_thickness::set(structure.unwrap_or_default(), slot);
-                mesh.face_sets.entry(set).or_default().push(shell);
-            }
-        }
         let study = document.statics.clone().unwrap_or_default();
         Ok(Self {
             topology: Arc::new(Topology::new(

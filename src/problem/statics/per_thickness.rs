@@ -32,20 +32,16 @@ pub(crate) fn set(structure: &str, thickness: usize) -> String {
 
 /// The sets of all thicknesses of a document, structure by structure.
 fn sets(document: &Document) -> Vec<String> {
-    let shells = document
-        .structures
-        .iter()
-        .filter(|(_, structure)| !structure.mesh.is_of_beams());
-    let of_one = |(name, structure): (&String, _)| {
-        let structure: &crate::problem::schema::structures::Structure = structure;
+    let mut all = Vec::new();
+    for (name, structure) in &document.structures {
         let count = match &structure.thickness {
+            _ if structure.mesh.is_of_beams() => 0,
             Some(Thickness::Varied(varied)) => thickness_count(structure, varied),
             Some(Thickness::Uniform(_)) | None => 1,
         };
-        let name = name.clone();
-        (0..count).map(move |k| set(&name, k))
-    };
-    shells.flat_map(of_one).collect()
+        all.extend((0..count).map(|k| set(name, k)));
+    }
+    all
 }
 
 /// Replaces such stresses of `value`, which is `document`, and constraints on them by one for each thickness.
@@ -57,83 +53,63 @@ pub(crate) fn expand(document: &Document, value: &mut Value) -> Result<(), Findi
     if several.is_empty() {
         return Ok(());
     }
+    let is_several = |name: &str| several.iter().any(|own| *own == name);
     let sets = sets(document);
-    let functions = entries(value, "functions");
-    let mut all = Map::new();
-    for (name, function) in std::mem::take(functions) {
-        if !several.contains(&&name) {
-            insert(&mut all, "functions", name, function)?;
-            continue;
-        }
-        for (k, set) in sets.iter().enumerate() {
+    replace(value, "functions", sets.len(), |name, function, k| {
+        is_several(name).then(|| {
             let mut own = function.clone();
-            own["von_mises"]["elements"] = Value::String(set.clone());
-            insert(&mut all, "functions", one(&name, k), own)?;
+            own["von_mises"]["elements"] = sets[k].as_str().into();
+            own
+        })
+    })?;
+    for (key, function) in value["objective"].as_object().into_iter().flatten() {
+        if let Some(name) = function.as_str().filter(|name| is_several(name)) {
+            let found = format!("\"{name}\", a stress for each thickness");
+            let place = join("/objective", key);
+            return Err(Finding::new(place, found, "a function of one value"));
         }
     }
-    *functions = all;
-    let is_several = |function: &Value| several.iter().any(|name| function == name.as_str());
-    if let Some(objective) = value.get("objective").and_then(Value::as_object) {
-        for (key, function) in objective {
-            if is_several(function) {
-                let found = format!(
-                    "\"{}\", a stress for each thickness",
-                    function.as_str().unwrap_or_default()
-                );
-                return Err(Finding::new(
-                    join("/objective", key),
-                    found,
-                    "a function of one value",
-                ));
+    replace(value, "constraints", sets.len(), |_, constraint, k| {
+        let function = constraint["function"]
+            .as_str()
+            .filter(|name| is_several(name))?;
+        let mut own = constraint.clone();
+        own["function"] = one(function, k).into();
+        Some(own)
+    })
+}
+
+/// Replaces every entry of a section that has members by all `count` of them, in its place; `member` gives the one of
+/// this number, if the entry has members.
+fn replace(
+    document: &mut Value,
+    section: &str,
+    count: usize,
+    member: impl Fn(&str, &Value, usize) -> Option<Value>,
+) -> Result<(), Finding> {
+    let Some(entries) = document.get_mut(section).and_then(Value::as_object_mut) else {
+        return Ok(());
+    };
+    let mut all = Map::new();
+    for (name, entry) in std::mem::take(entries) {
+        let members = (0..count).filter_map(|k| Some((one(&name, k), member(&name, &entry, k)?)));
+        let members: Vec<(String, Value)> = members.collect();
+        let own = match members.is_empty() {
+            true => vec![(name, entry)],
+            false => members,
+        };
+        for (name, entry) in own {
+            let place = join(&format!("/{section}"), &name);
+            if all.insert(name, entry).is_some() {
+                let found = "a name that an entry for each thickness has";
+                return Err(Finding::new(place, found, "another name").of_key());
             }
         }
     }
-    let constraints = entries(value, "constraints");
-    let mut all = Map::new();
-    for (name, constraint) in std::mem::take(constraints) {
-        let function = constraint["function"].clone();
-        if !is_several(&function) {
-            insert(&mut all, "constraints", name, constraint)?;
-            continue;
-        }
-        for k in 0..sets.len() {
-            let mut own = constraint.clone();
-            own["function"] = Value::String(one(function.as_str().unwrap_or_default(), k));
-            insert(&mut all, "constraints", one(&name, k), own)?;
-        }
-    }
-    *constraints = all;
+    *entries = all;
     Ok(())
 }
 
 fn one(name: &str, k: usize) -> String {
     format!("{name}[{k}]")
-}
-
-/// The entries of a section of a document; those of a new one if it has none.
-fn entries<'a>(document: &'a mut Value, section: &str) -> &'a mut Map<String, Value> {
-    if !document[section].is_object() {
-        document[section] = Value::Object(Map::new());
-    }
-    document[section]
-        .as_object_mut()
-        .expect("it is an object now")
-}
-
-fn insert(
-    all: &mut Map<String, Value>,
-    section: &str,
-    name: String,
-    entry: Value,
-) -> Result<(), Finding> {
-    let pointer = join(&format!("/{section}"), &name);
-    match all.insert(name, entry) {
-        None => Ok(()),
-        Some(_) => Err(Finding::new(
-            pointer,
-            "a name that an entry for each thickness has",
-            "another name",
-        )
-        .of_key()),
-    }
 }
