@@ -113,6 +113,7 @@ pub(crate) fn optimise(job: &Job, course: &RunOptions) -> Result<u8, Failure> {
         }
         _ => {}
     }
+    let of_one_start = matches!(start, Start::Only) && done.outcome.status == Status::Converged;
     let state = WarmStart::of(&problem, &done.outcome, &done.integration);
     add_sensitivities(&mut done, &parameters);
     let (recorded, refused) = write(&done, state, optima, &directory);
@@ -135,6 +136,11 @@ pub(crate) fn optimise(job: &Job, course: &RunOptions) -> Result<u8, Failure> {
     if !job.quiet || unwritten.is_some() {
         print(&summary(&done.optimum))?;
         tell(&times(&done.outcome.counts, certified));
+        if of_one_start {
+            tell(
+                "a local optimum, as one start finds it: --starts 4 seeks better ones from other starts\n",
+            );
+        }
     }
     // Figures of an earlier run belong to its record, which stays if no new one was written.
     if recorded {

@@ -147,7 +147,7 @@ impl Scalar for Complex64 {
 /// It carries the derivative of model parameters in design variables. The check of the total
 /// gradient uses [`Complex64`], so neither verifies itself.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Dual {
+pub(crate) struct Dual {
     /// Value.
     pub re: f64,
     /// Derivative.
@@ -156,7 +156,7 @@ pub struct Dual {
 
 impl Dual {
     /// The dual number `re` + ε `du`.
-    pub fn new(re: f64, du: f64) -> Self {
+    pub(crate) fn new(re: f64, du: f64) -> Self {
         Self { re, du }
     }
 }

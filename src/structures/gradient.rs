@@ -8,18 +8,20 @@
 //! ```
 //!
 //! (f the loads, F the internal forces). The products with ψ are the infinitesimal parts of the
-//! derivatives of work and energy at x + ε ψ.
+//! derivatives of work and energy at x + ε ψ. By thickness alone, ∂F/∂h of each shell is found once for all
+//! functions.
 
 use super::assembly::add_energy_transpose;
 use super::functions::{Function, Partial, Solved, zero_load};
 use super::loads::{Load, add_work_transpose};
 use super::mesh::UnknownSet;
 use super::reactions::stiffness_times;
-use super::shell::Terms;
+use super::shell::{Motion, NODES, ShellCotangent, Terms};
 use super::state::NodalMotion;
 use super::statics::{StaticFailure, StaticProblem, mechanism};
 use super::structure::Structure;
-use crate::math::Dual;
+use crate::math::{Dual, Vec3};
+use rayon::prelude::*;
 
 /// Derivatives of a function: by the structure, by the loads of each case.
 #[derive(Clone, Debug)]
@@ -30,8 +32,18 @@ pub struct Gradient {
     pub cases: Vec<Vec<Load<f64>>>,
 }
 
-/// The gradient of a function of a linear solution by everything, with one adjoint solve for each load
-/// case that the function depends on. `problem` still has the factors of the stiffness.
+/// By which numbers of a structure a function is derived.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum By {
+    /// All of them.
+    Everything,
+    /// The thickness of the shells. The others may be left out, which makes many functions cheap: the derivatives of
+    /// the internal forces by the thickness are found once.
+    Thickness,
+}
+
+/// The gradient of a function of a linear solution by everything. `problem` still has the factors of the
+/// stiffness.
 ///
 /// # Errors
 /// [`UnknownSet`] if function or loads name no set of the mesh.
@@ -42,23 +54,20 @@ pub fn gradient(
     solutions: &[Vec<f64>],
     function: &Function,
 ) -> Result<Gradient, UnknownSet> {
-    let one = |failure| match failure {
-        StaticFailure::UnknownSet(unknown) => unknown,
-        other => unreachable!("linear adjoints make no factors: {other}"),
-    };
-    gradient_of(
-        problem,
+    let at = Solutions {
         structure,
         cases,
         solutions,
-        function,
-        Terms::LINEAR,
-    )
-    .map_err(one)
+        terms: Terms::LINEAR,
+    };
+    match gradients(problem, &at, &[function], By::Everything) {
+        Ok(mut found) => Ok(found.gradients.remove(0)),
+        Err(StaticFailure::UnknownSet(unknown)) => Err(unknown),
+        Err(other) => unreachable!("linear adjoints make no factors: {other}"),
+    }
 }
 
-/// The gradient of a function of states with von Karman's strains. The tangent of each state that the
-/// function depends on is assembled and factorised again.
+/// The gradient of a function of states with von Karman's strains by everything.
 ///
 /// # Errors
 /// [`StaticFailure`] if a state is not stable, or if function or loads name no set of the mesh.
@@ -69,97 +78,240 @@ pub fn gradient_von_karman(
     solutions: &[Vec<f64>],
     function: &Function,
 ) -> Result<Gradient, StaticFailure> {
-    gradient_of(
-        problem,
+    let at = Solutions {
         structure,
         cases,
         solutions,
-        function,
-        Terms::VON_KARMAN,
-    )
+        terms: Terms::VON_KARMAN,
+    };
+    gradients(problem, &at, &[function], By::Everything).map(|mut found| found.gradients.remove(0))
 }
 
-fn gradient_of(
+/// Solutions of load cases.
+pub(crate) struct Solutions<'a> {
+    /// The structure.
+    pub structure: &'a Structure<f64>,
+    /// The loads of each case.
+    pub cases: &'a [Vec<Load<f64>>],
+    /// The solution of each case; empty if no function needs it.
+    pub solutions: &'a [Vec<f64>],
+    /// The terms of the strain that were taken.
+    pub terms: Terms,
+}
+
+/// Gradients of functions, in order, and the work that they took.
+pub(crate) struct Gradients {
+    pub gradients: Vec<Gradient>,
+    pub work: Work,
+}
+
+/// What adjoint solutions took.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub(crate) struct Work {
+    /// Factorisations.
+    pub factorisations: usize,
+    /// Solutions with the factors.
+    pub solves: usize,
+}
+
+/// The gradients of functions, with one adjoint solution for each load case that a function depends on. With
+/// von Karman's strains the tangent of each case is factorised again, once for all functions.
+///
+/// # Errors
+/// [`StaticFailure`] if a state is not stable, or if functions or loads name no set of the mesh.
+pub(crate) fn gradients(
     problem: &mut StaticProblem,
-    structure: &Structure<f64>,
-    cases: &[Vec<Load<f64>>],
-    solutions: &[Vec<f64>],
+    at: &Solutions,
+    functions: &[&Function],
+    by: By,
+) -> Result<Gradients, StaticFailure> {
+    let mut work = Work::default();
+    let mut all = Vec::with_capacity(functions.len());
+    let mut seeds = Vec::with_capacity(functions.len());
+    for function in functions {
+        let (partial, rights) = partial_gradient(problem, at, function, by)?;
+        all.push(partial);
+        seeds.push(rights);
+    }
+    for (case, x) in at.solutions.iter().enumerate() {
+        if seeds.iter().all(|seeds| seeds[case].is_none()) {
+            continue;
+        }
+        if at.terms.von_karman {
+            work.factorisations += 1;
+            problem
+                .factorise_at(at.structure, x)
+                .map_err(|failure| mechanism(&problem.assembly, at.structure, &failure))?;
+        }
+        let by_thickness = match by {
+            By::Everything => None,
+            By::Thickness => Some(forces_by_thickness(problem, at.structure, x, at.terms)),
+        };
+        for (gradient, seeds) in all.iter_mut().zip(&mut seeds) {
+            let Some(seed) = seeds[case].take() else {
+                continue;
+            };
+            work.solves += 1;
+            let point = AdjointPoint {
+                x,
+                adjoint: problem.solve_factorised(&seed.right),
+                psi: seed.psi,
+            };
+            if let Some(forces) = &by_thickness {
+                let by = product_by_thickness(problem, at, case, &point, forces)?;
+                let pairs = gradient.structure.thickness.iter_mut().zip(by);
+                pairs.for_each(|(sum, part)| *sum += part);
+                continue;
+            }
+            let (by_structure, by_loads) = adjoint_product(problem, at, case, &point)?;
+            gradient.structure.add(&by_structure);
+            for (sum, part) in gradient.cases[case].iter_mut().zip(by_loads) {
+                add_load(sum, &part);
+            }
+        }
+    }
+    Ok(Gradients {
+        gradients: all,
+        work,
+    })
+}
+
+/// The right-hand side ∂J/∂x of an adjoint solution, and the virtual motion of a reaction.
+struct Seed {
+    right: Vec<f64>,
+    psi: Option<NodalMotion<f64>>,
+}
+
+/// The partial derivatives ∂J/∂p of a function, and a seed for each case that it depends on.
+fn partial_gradient(
+    problem: &StaticProblem,
+    at: &Solutions,
     function: &Function,
-    terms: Terms,
-) -> Result<Gradient, StaticFailure> {
+    by: By,
+) -> Result<(Gradient, Vec<Option<Seed>>), UnknownSet> {
     let solved = Solved {
         problem,
-        structure,
-        cases,
-        solutions,
-        terms,
+        structure: at.structure,
+        cases: at.cases,
+        solutions: at.solutions,
+        terms: at.terms,
     };
     let configuration = solved.configuration();
     let Partial {
         motions,
         mut to,
-        cases: case_bars,
+        cases,
         virtual_motions,
     } = solved.partial(&configuration, function)?;
-    let mut rights = Vec::with_capacity(cases.len());
-    for ((motion, x), psi) in motions.iter().zip(solutions).zip(&virtual_motions) {
+    let mut seeds = Vec::with_capacity(cases.len());
+    for ((motion, x), psi) in motions.iter().zip(at.solutions).zip(virtual_motions) {
         // A case that no function needs has no solution.
         if x.is_empty() {
-            rights.push(Vec::new());
+            seeds.push(None);
             continue;
         }
         let mut right = vec![0.0; x.len()];
         configuration.add_spread_transpose(x, motion, &mut right, &mut to.directors);
-        if let Some(psi) = psi {
+        if let Some(psi) = &psi {
             let (v, assembly) = (configuration.spread(x), &problem.assembly);
-            let product = stiffness_times(structure, assembly, &v, psi, terms);
+            let product = stiffness_times(at.structure, assembly, &v, psi, at.terms);
             // The part through directors is in the adjoint product.
             let mut unused = to.directors.clone();
             configuration.add_spread_transpose(x, &product, &mut right, &mut unused);
         }
-        rights.push(right);
+        let depends = psi.is_some() || right.iter().any(|&r| r != 0.0);
+        seeds.push(depends.then_some(Seed { right, psi }));
     }
-    let mut all = Gradient {
-        structure: configuration.finish(to),
-        cases: case_bars,
+    let structure = match by {
+        By::Everything => configuration.finish(to),
+        By::Thickness => to.structure,
     };
-    for (case, right) in rights.iter().enumerate() {
-        let psi = virtual_motions[case].as_ref();
-        if psi.is_some() || right.iter().any(|&r| r != 0.0) {
-            let x = &solutions[case];
-            if terms.von_karman {
-                problem
-                    .factorise_at(structure, x)
-                    .map_err(|failure| mechanism(&problem.assembly, structure, &failure))?;
-            }
-            let adjoint = problem.solve_factorised(right);
-            let at = AdjointPoint { x, adjoint, psi };
-            let (by_structure, by_loads) =
-                adjoint_product(problem, structure, &cases[case], &at, terms)?;
-            all.structure.add(&by_structure);
-            for (sum, part) in all.cases[case].iter_mut().zip(by_loads) {
-                add_load(sum, &part);
-            }
-        }
+    Ok((Gradient { structure, cases }, seeds))
+}
+
+/// ∂F/∂h of each shell, h its thickness, at its nodes.
+fn forces_by_thickness(
+    problem: &StaticProblem,
+    structure: &Structure<f64>,
+    x: &[f64],
+    terms: Terms,
+) -> Vec<Motion<f64>> {
+    let mut lifted = structure.map(Dual::from);
+    for thickness in &mut lifted.thickness {
+        *thickness += Dual::new(0.0, 1.0);
     }
-    Ok(all)
+    let configuration = problem.assembly.configuration(&lifted);
+    let still: Vec<Dual> = x.iter().map(|&x| Dual::from(x)).collect();
+    let motion = configuration.spread(&still);
+    let shells = structure.topology.mesh.shells.par_iter().enumerate();
+    let one = |(index, element)| {
+        let (mut force, mut unused) = (Motion::zeros(), ShellCotangent::zeros());
+        let v = motion.of_element(element);
+        let shell = configuration.shell(index);
+        shell.add_energy_transpose(&v, terms, &mut force, &mut unused);
+        let part = |nodes: &[Vec3<Dual>; NODES]| nodes.map(|v| v.map(|x| x.du));
+        Motion {
+            displacement: part(&force.displacement),
+            rotation: part(&force.rotation),
+        }
+    };
+    shells.map(one).collect()
 }
 
 /// A state, its adjoint, and the virtual motion of a reaction.
 struct AdjointPoint<'a> {
     x: &'a [f64],
     adjoint: Vec<f64>,
-    psi: Option<&'a NodalMotion<f64>>,
+    psi: Option<NodalMotion<f64>>,
+}
+
+/// ψ·∂(f − F)/∂h by the thickness of each shell, with the derivatives `forces` of the internal forces.
+fn product_by_thickness(
+    problem: &StaticProblem,
+    solved: &Solutions,
+    case: usize,
+    at: &AdjointPoint,
+    forces: &[Motion<f64>],
+) -> Result<Vec<f64>, UnknownSet> {
+    let configuration = problem.assembly.configuration(solved.structure);
+    let mut motion = configuration.spread(&at.adjoint);
+    if let Some(psi) = &at.psi {
+        motion.add_scaled(psi, -1.0);
+    }
+    let shells = solved.structure.topology.mesh.shells.iter().zip(forces);
+    let mut all: Vec<f64> = shells
+        .map(|(element, force)| -motion.of_element(element).dot(force))
+        .collect();
+    // Of all loads, gravity alone depends on the thickness.
+    let weights = solved.cases[case].iter();
+    for load in weights.filter(|load| matches!(load, Load::Gravity { .. })) {
+        let mut unused = (
+            NodalMotion::zeros(solved.structure.nodes.len()),
+            zero_load(load),
+        );
+        let mut to = configuration.cotangent();
+        add_work_transpose(
+            &configuration,
+            load,
+            &motion,
+            &mut unused.0,
+            &mut to,
+            &mut unused.1,
+        )?;
+        let pairs = all.iter_mut().zip(&to.structure.thickness);
+        pairs.for_each(|(sum, part)| *sum += part);
+    }
+    Ok(all)
 }
 
 /// ψ·∂(f − F)/∂p by structure and loads, ψ being the adjoint less the virtual motion.
 fn adjoint_product(
     problem: &StaticProblem,
-    structure: &Structure<f64>,
-    case: &[Load<f64>],
+    solved: &Solutions,
+    case: usize,
     at: &AdjointPoint,
-    terms: Terms,
 ) -> Result<(Structure<f64>, Vec<Load<f64>>), UnknownSet> {
+    let (structure, case) = (solved.structure, &solved.cases[case]);
     let lifted = structure.map(Dual::from);
     let configuration = problem.assembly.configuration(&lifted);
     let state: Vec<Dual> =
@@ -168,8 +320,8 @@ fn adjoint_product(
             .map(|(&x, &psi)| Dual::new(x, psi))
             .collect();
     let mut motion = configuration.spread(&state);
-    if let Some(psi) = at.psi {
-        motion.add_infinitesimal(psi, -1.0);
+    if let Some(psi) = &at.psi {
+        motion.add_scaled(&psi.map(Dual::from), Dual::new(0.0, -1.0));
     }
     // Derivatives of the energy less the work, with the opposite sign at the end.
     let mut force = NodalMotion::zeros(structure.nodes.len());
@@ -193,7 +345,7 @@ fn adjoint_product(
     add_energy_transpose(
         &configuration,
         &motion,
-        terms,
+        solved.terms,
         &mut internal,
         &mut internal_to,
     );

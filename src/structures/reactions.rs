@@ -155,7 +155,7 @@ pub(super) fn stiffness_times(
     let lifted = structure.map(Dual::from);
     let configuration = assembly.configuration(&lifted);
     let mut disturbed = motion.map(Dual::from);
-    disturbed.add_infinitesimal(psi, 1.0);
+    disturbed.add_scaled(&psi.map(Dual::from), Dual::new(0.0, 1.0));
     let mut force = NodalMotion::zeros(structure.nodes.len());
     let to = &mut configuration.cotangent();
     add_energy_transpose(&configuration, &disturbed, terms, &mut force, to);

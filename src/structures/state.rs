@@ -3,7 +3,7 @@
 use super::shell::{Field, Motion, NODES, RotationAxes, Shell, ShellCotangent, Terms};
 use super::structure::Structure;
 use super::supports::{NodeUnknowns, Normal, Rotations, Unknowns};
-use crate::math::{Dual, Scalar, Vec3};
+use crate::math::{Scalar, Vec3};
 
 /// Displacements [m] and rotations [rad] of the nodes in global axes; or forces [N] and moments [N m].
 #[derive(Clone, Debug, PartialEq)]
@@ -29,6 +29,20 @@ impl<S: Scalar> NodalMotion<S> {
         NodalMotion {
             displacement: all(&self.displacement),
             rotation: all(&self.rotation),
+        }
+    }
+
+    /// Adds `factor` times another motion.
+    pub(crate) fn add_scaled(&mut self, other: &Self, factor: S) {
+        let pairs = [
+            (&mut self.displacement, &other.displacement),
+            (&mut self.rotation, &other.rotation),
+        ];
+        for (v, w) in pairs
+            .into_iter()
+            .flat_map(|(to, from)| to.iter_mut().zip(from))
+        {
+            *v += w * factor;
         }
     }
 
@@ -60,21 +74,6 @@ pub(crate) struct Configuration<'a, S> {
 pub(crate) struct Cotangent<S> {
     pub structure: Structure<S>,
     pub directors: Vec<Vec3<S>>,
-}
-
-impl NodalMotion<Dual> {
-    /// Adds `factor` times a motion to the infinitesimal part.
-    pub(crate) fn add_infinitesimal(&mut self, other: &NodalMotion<f64>, factor: f64) {
-        let pairs = [
-            (&mut self.displacement, &other.displacement),
-            (&mut self.rotation, &other.rotation),
-        ];
-        for (to, from) in pairs {
-            for (v, w) in to.iter_mut().zip(from) {
-                *v += w.map(|x| Dual::new(0.0, factor * x));
-            }
-        }
-    }
 }
 
 impl<S: Scalar> Cotangent<S> {

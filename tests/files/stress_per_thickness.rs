@@ -88,6 +88,51 @@ fn every_thickness_has_its_stress() {
     }
 }
 
+/// Where thickness alone is designed, all functions share the derivatives of the internal forces. A further variable
+/// changes no derivative, whether the strains are linear or von Karman's, and whatever the function; the tangent of
+/// von Karman's is factorised once for all functions.
+#[test]
+fn many_functions_share_their_derivatives() {
+    let thickness = json!({"per": "patch", "patches": [2, 4], "value": 0.004});
+    let mut functions = stresses(true);
+    functions["energy"] = json!({"strain_energy": {"case": "pressure"}});
+    functions["weight"] =
+        json!({"reaction": {"nodes": "x0", "direction": [0, 0, 1], "case": "pressure"}});
+    for strains in ["linear", "von_karman"] {
+        let mut file = plate(&thickness, &functions);
+        file["statics"] = json!({"strains": strains});
+        file["load_cases"]["pressure"]["weight"] =
+            json!({"gravity": {"acceleration": [0, 0, -900]}});
+        let alone = parsed(&file);
+        file["variables"]["modulus"] =
+            json!({"path": "/materials/aluminium/young", "lower": 6e10, "upper": 8e10});
+        let beside = parsed(&file);
+        let all: Vec<usize> = (0..alone.function_names.len()).collect();
+        let gradients = |problem: &Problem| {
+            let found = solved_at(problem, &problem.start());
+            found.derivatives(problem, &all).expect("derivatives")
+        };
+        let ((own, counts), (other, _)) = (gradients(&alone), gradients(&beside));
+        // Nothing is solved for the mass.
+        assert_eq!(counts.solves, all.len() - 1, "{strains}");
+        let factorisations = usize::from(strains == "von_karman");
+        assert_eq!(counts.factorisations, factorisations, "{strains}");
+        for (f, (own, other)) in own.iter().zip(&other).enumerate() {
+            let size = own.iter().fold(0.0f64, |m, d| m.max(d.value.abs()));
+            for (a, b) in own.iter().zip(other) {
+                let difference = (a.value - b.value).abs();
+                assert!(
+                    difference <= 1e-12 * size,
+                    "{strains} {f}: {} {}",
+                    a.value,
+                    b.value
+                );
+            }
+        }
+        assert_gradients(strains, &alone);
+    }
+}
+
 /// A thickness, a change of the file, and the place and some words of its fault.
 type Case<'a> = (&'a Value, &'a dyn Fn(&mut Value), &'a str, &'a str);
 
@@ -155,7 +200,7 @@ fn faults_name_the_place() {
 }
 
 /// A quarter of a plate in 4 × 4 patches: with a limit for each patch at most 60 simulations lead to an optimum, where one
-/// limit for all takes more than twice as many, and the optima weigh the same within 2 %.
+/// limit for all takes more than twice as many, and the plate weighs at most 2 % more.
 #[test]
 fn patches_are_sized_in_few_simulations() {
     let sized = |per: bool, start: f64| {
@@ -173,5 +218,5 @@ fn patches_are_sized_in_few_simulations() {
     };
     let [each, one] = [(true, 0.025), (false, 0.025)].map(|(per, start)| sized(per, start));
     assert!(each.1 <= 60 && 2 * each.1 < one.1, "{each:?} {one:?}");
-    assert!((each.0 / one.0 - 1.0).abs() < 0.02, "{each:?} {one:?}");
+    assert!(each.0 < 1.02 * one.0, "{each:?} {one:?}");
 }

@@ -13,7 +13,7 @@ use crate::integrate::WorkCounts;
 use crate::math::soft_max::{Smoothed, smoothed};
 use crate::problem::{Asked, Problem, StaticScene, Statics, Workspace};
 use crate::structures::functions::{Function, Peak, Solved};
-use crate::structures::gradient::{Gradient, gradient, gradient_von_karman};
+use crate::structures::gradient::{By, Gradient, Solutions, gradients};
 use crate::structures::loads::Load;
 use crate::structures::modes::{
     LowestFrequency, ModalFailure, ModalProblem, Modes, frequency_gradient, lowest_frequency,
@@ -24,6 +24,7 @@ use crate::structures::quality::{MeshFault, faults};
 use crate::structures::statics::{StaticFailure, StaticProblem};
 use crate::structures::structure::Structure;
 use crate::structures::von_karman::LoadSteps;
+use std::collections::BTreeMap;
 use std::sync::{Arc, Mutex, MutexGuard, PoisonError};
 
 /// Why structures have no solution or no gradient at a design.
@@ -373,41 +374,50 @@ impl StaticDesign {
         }
     }
 
-    /// The derivatives of a function by structure and loads.
-    fn by_structure(&self, f: usize, counts: &mut WorkCounts) -> Result<Gradient, StaticsFailure> {
+    /// The derivatives of a function of modes by structure and loads.
+    fn by_structure(&self, f: usize) -> Result<Gradient, StaticsFailure> {
         let mut workspace = self.shared();
         let (statics, structure) = (&self.statics, &self.scene.structure);
-        let of_structure = |structure| Gradient {
-            structure,
-            cases: self.scene.cases.iter().map(|case| zeros(case)).collect(),
-        };
-        Ok(match &statics.functions[f] {
-            Asked::DistanceFromStart => of_structure(structure.zeros()),
+        let by_structure = match &statics.functions[f] {
+            Asked::DistanceFromStart | Asked::OfSolutions(_) => structure.zeros(),
             Asked::LowestFrequency(_) => {
                 let found = self.lowest[f].as_ref().expect("it was found before");
-                of_structure(found.gradient.clone())
+                found.gradient.clone()
             }
             Asked::Frequency(mode) => {
                 let found = self.modes.as_ref().expect("modes were found before");
                 let modal = of_modes(&mut workspace, statics, structure)?;
-                of_structure(frequency_gradient(modal, structure, found, *mode)?)
+                frequency_gradient(modal, structure, found, *mode)?
             }
-            Asked::OfSolutions(function) => {
-                let solved = cases_of(&statics.functions[f]).len();
-                counts.solves += solved;
-                let matrices = of_cases(&mut workspace, statics, structure)?;
-                let (cases, solutions) = (&self.scene.cases, &self.solutions);
-                match statics.terms.von_karman {
-                    true => {
-                        counts.factorisations += solved;
-                        gradient_von_karman(matrices, structure, cases, solutions, function)
-                            .map_err(ModalFailure::from)?
-                    }
-                    false => gradient(matrices, structure, cases, solutions, function)
-                        .map_err(|unknown| ModalFailure::from(StaticFailure::from(unknown)))?,
-                }
-            }
+        };
+        Ok(Gradient {
+            structure: by_structure,
+            cases: self.scene.cases.iter().map(|case| zeros(case)).collect(),
         })
+    }
+
+    /// The derivatives of functions of solutions by structure and loads, in order.
+    fn by_solutions(
+        &self,
+        functions: &[&Function],
+        by: By,
+        counts: &mut WorkCounts,
+    ) -> Result<Vec<Gradient>, StaticsFailure> {
+        if functions.is_empty() {
+            return Ok(Vec::new());
+        }
+        let mut workspace = self.shared();
+        let matrices = of_cases(&mut workspace, &self.statics, &self.scene.structure)?;
+        let at = Solutions {
+            structure: &self.scene.structure,
+            cases: &self.scene.cases,
+            solutions: &self.solutions,
+            terms: self.statics.terms,
+        };
+        let found = gradients(matrices, &at, functions, by).map_err(ModalFailure::from)?;
+        counts.solves += found.work.solves;
+        counts.factorisations += found.work.factorisations;
+        Ok(found.gradients)
     }
 
     /// Exact derivatives of the functions `which` in the design variables, and the work they took.
@@ -420,27 +430,41 @@ impl StaticDesign {
         which: &[usize],
     ) -> Result<(Vec<Vec<Derivative>>, WorkCounts), StaticsFailure> {
         let moved = problem.moved(&self.statics, &self.x);
+        let by = match moved.is_empty() && self.scene.structure.sections.is_empty() {
+            true => By::Thickness,
+            false => By::Everything,
+        };
         let mut counts = WorkCounts::default();
-        let mut all: Vec<Vec<Derivative>> = Vec::with_capacity(which.len());
-        for (k, &f) in which.iter().enumerate() {
-            if let Some(known) = which[..k].iter().position(|&other| other == f) {
-                all.push(all[known].clone());
-                continue;
-            }
-            if self.statics.functions[f] == Asked::DistanceFromStart {
-                all.push(distance_derivatives(problem, &self.x));
-                continue;
-            }
-            let by = self.by_structure(f, &mut counts)?;
+        let mut distinct = which.to_vec();
+        distinct.sort_unstable();
+        distinct.dedup();
+        let of_solutions = distinct
+            .iter()
+            .filter_map(|&f| match &self.statics.functions[f] {
+                Asked::OfSolutions(function) => Some(function),
+                _ => None,
+            });
+        let of_solutions: Vec<&Function> = of_solutions.collect();
+        let mut of_solutions = self
+            .by_solutions(&of_solutions, by, &mut counts)?
+            .into_iter();
+        let mut all: BTreeMap<usize, Vec<Derivative>> = BTreeMap::new();
+        for f in distinct {
+            let by = match &self.statics.functions[f] {
+                Asked::DistanceFromStart => {
+                    all.insert(f, distance_derivatives(problem, &self.x));
+                    continue;
+                }
+                Asked::OfSolutions(_) => of_solutions.next().expect("one for each function"),
+                Asked::Frequency(_) | Asked::LowestFrequency(_) => self.by_structure(f)?,
+            };
             let found = problem.pull_back(&self.statics, &moved, (&by.structure, &by.cases));
             let pairs = found.values.into_iter().zip(found.terms);
-            all.push(
-                pairs
-                    .map(|(value, terms)| Derivative { value, terms })
-                    .collect(),
-            );
+            let pairs = pairs.map(|(value, terms)| Derivative { value, terms });
+            all.insert(f, pairs.collect());
         }
-        Ok((all, counts))
+        let found = which.iter().map(|f| all[f].clone());
+        Ok((found.collect(), counts))
     }
 }
 

@@ -28,6 +28,13 @@ impl PulledBack {
 /// Derivatives of the numbers except thickness and sections in some variables.
 pub(crate) struct Moved(Vec<(usize, Vec<f64>)>);
 
+impl Moved {
+    /// Whether thickness and sections are all that a design moves.
+    pub(crate) fn is_empty(&self) -> bool {
+        self.0.is_empty()
+    }
+}
+
 /// All numbers except thickness and sections, in one order.
 fn others<S: Scalar>(structure: &Structure<S>, cases: &[Vec<Load<S>>]) -> Vec<S> {
     let mut all: Vec<S> = structure.nodes.iter().flatten_xyz().collect();

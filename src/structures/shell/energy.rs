@@ -105,6 +105,16 @@ impl<S: Scalar> Motion<S> {
     }
 }
 
+impl Motion<f64> {
+    /// The work of forces in the motion.
+    pub(crate) fn dot(&self, force: &Self) -> f64 {
+        let dot = |moves: &[Vec3<f64>; NODES], forces: &[Vec3<f64>; NODES]| -> f64 {
+            moves.iter().zip(forces).map(|(v, f)| v.dot(f)).sum()
+        };
+        dot(&self.displacement, &force.displacement) + dot(&self.rotation, &force.rotation)
+    }
+}
+
 /// Strain energy by its parts \[J\].
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct EnergyParts<S> {
