@@ -100,6 +100,10 @@ pub(crate) struct Job {
     /// move it writes fields_0000.vtu and so on, at most 101 instants, and their list fields.pvd.
     #[arg(long)]
     pub vtu: bool,
+    /// Writes report.html beside the results: one page for any browser, without a network, that shows the machine in
+    /// motion, tables and curves.
+    #[arg(long)]
+    pub report: bool,
     /// Refines steps, samples and reduced bases until the estimated relative error of the objective at the start is
     /// below this value. They are never coarser than in the file.
     #[arg(long, value_name = "ERROR", value_parser = positive)]
@@ -160,6 +164,11 @@ pub(crate) enum Command {
     Compare(Comparison),
     /// Draw the figures of a result directory again, from its record.
     Plot {
+        /// Directory with optimum.json and history.csv.
+        directory: PathBuf,
+    },
+    /// Write report.html into a result directory, from its record: the machine in motion, tables and curves.
+    Report {
         /// Directory with optimum.json and history.csv.
         directory: PathBuf,
     },

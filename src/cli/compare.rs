@@ -1,10 +1,14 @@
-//! `optimize compare`, `optimize plot` and `optimize schema`.
+//! `optimize compare`, `optimize plot`, `optimize report` and `optimize schema`.
 
 use super::arguments::Comparison;
 use super::optimise::STATE;
-use super::{DONE, Failure, NOT_REACHED, print, record};
+use super::{DONE, Failure, NOT_REACHED, REPORT, print, record};
+use crate::driver::page::page;
+use crate::driver::recorded::Recorded;
 use crate::driver::{WarmStart, figures};
-use crate::report::{Tolerances, prepare_directory, read_text, write_all};
+use crate::report::{
+    History, Optimum, Tolerances, prepare_directory, read_text, summary, write_all,
+};
 use std::path::{Path, PathBuf};
 
 /// Compares two records.
@@ -21,16 +25,44 @@ pub(crate) fn compare(files: &Comparison) -> Result<u8, Failure> {
 
 /// Draws the figures of a result directory from its record.
 pub(crate) fn plot(directory: &Path) -> Result<u8, Failure> {
+    from_record(directory, |_, recorded, history| {
+        Ok(figures::of_ends(
+            &recorded.problem,
+            &recorded.ends(),
+            history,
+        ))
+    })
+}
+
+/// Writes the page of a result directory from its record.
+pub(crate) fn report(directory: &Path) -> Result<u8, Failure> {
+    from_record(directory, |optimum, recorded, history| {
+        let of_run = Some((optimum, history));
+        let page = page(
+            &recorded.problem,
+            summary(optimum),
+            &recorded.ends(),
+            of_run,
+        );
+        let page = page.map_err(Failure::numerical)?;
+        Ok(vec![(REPORT, page.into_bytes())])
+    })
+}
+
+/// Writes files beside a record, made from it.
+fn from_record(
+    directory: &Path,
+    make: impl Fn(&Optimum, &Recorded, &History) -> Result<Vec<figures::NamedFile>, Failure>,
+) -> Result<u8, Failure> {
     let (_, optimum) = record(directory)?;
     let history = read_text(&directory.join("history.csv"))?;
-    let history = crate::report::History::from_csv(&history)?;
+    let history = History::from_csv(&history)?;
     let state = std::fs::read(directory.join(STATE)).ok();
     let state = state.and_then(|text| serde_json::from_slice::<WarmStart>(&text).ok());
     let _held = prepare_directory(directory)?;
-    let files = figures::of_record(&optimum, &history, state.as_ref(), directory)
-        .map_err(Failure::bad_input)?;
+    let recorded = Recorded::of(&optimum, state.as_ref(), directory).map_err(Failure::bad_input)?;
+    let files = make(&optimum, &recorded, &history)?.into_iter();
     let files: Vec<(PathBuf, Vec<u8>)> = files
-        .into_iter()
         .map(|(name, bytes)| (directory.join(name), bytes))
         .collect();
     write_all(&files)?;

@@ -43,6 +43,9 @@ const NO_ACCESS: u8 = 4;
 /// Interrupted by a signal.
 const INTERRUPTED: u8 = 130;
 
+/// The page of a result.
+const REPORT: &str = "report.html";
+
 /// Why a command failed: exit code and message.
 struct Failure {
     code: u8,
@@ -136,6 +139,7 @@ pub fn run(arguments: impl Iterator<Item = OsString>) -> ExitCode {
         )),
         Some(Command::Compare(files)) => compare::compare(&files),
         Some(Command::Plot { directory }) => compare::plot(&directory),
+        Some(Command::Report { directory }) => compare::report(&directory),
         Some(Command::Schema) => compare::schema(),
         None => match arguments.job {
             Some(job) => optimise::optimise(&job, &arguments.course),

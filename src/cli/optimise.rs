@@ -6,9 +6,11 @@ use super::progress::show;
 use super::records::{Records, Start, changed, refuse_without_run};
 use super::starts::{several, spread};
 use super::{
-    DONE, Failure, INTERRUPTED, NOT_REACHED, NUMERICAL_FAILURE, draw, interrupt, print, read,
-    record, refine, shown, tell,
+    DONE, Failure, INTERRUPTED, NOT_REACHED, NUMERICAL_FAILURE, REPORT, draw, interrupt, print,
+    read, record, refine, shown, tell,
 };
+use crate::driver::ends::Ends;
+use crate::driver::page::page;
 use crate::driver::{self, Optimisation, WarmStart, certificate, figures};
 use crate::optimiser::{Counts, Status};
 use crate::problem::Problem;
@@ -145,6 +147,13 @@ pub(crate) fn optimise(job: &Job, course: &RunOptions) -> Result<u8, Failure> {
     // Figures of an earlier run belong to its record, which stays if no new one was written.
     if recorded {
         draw(&directory, figures::of_optimisation(&problem, &done));
+    }
+    if recorded && job.report {
+        let ends = Ends::of_optimisation(&done);
+        let of_run = Some((&done.optimum, &done.history));
+        let text = page(&problem, summary(&done.optimum), &ends, of_run);
+        let text = text.map_err(Failure::numerical)?;
+        write_all(&[(directory.join(REPORT), text.into_bytes())])?;
     }
     match (&done.end, recorded && job.vtu) {
         (Some(driver::Simulated::Statics(end)), true) => {

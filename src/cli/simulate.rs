@@ -3,7 +3,9 @@
 use super::aggregates::{add_smoothed, told};
 use super::arguments::Job;
 use super::error_table::{self, table};
-use super::{DONE, Failure, NOT_REACHED, draw, load, print, read, refine, shown, tell};
+use super::{DONE, Failure, NOT_REACHED, REPORT, draw, load, print, read, refine, shown, tell};
+use crate::driver::ends::Ends;
+use crate::driver::page::page;
 use crate::driver::tables::ReactionAxes;
 use crate::driver::unfollowed::unfollowed;
 use crate::driver::{
@@ -25,13 +27,10 @@ pub(crate) fn simulate(job: &Job, json: bool, joint_axes: bool) -> Result<u8, Fa
         Some(directory) => Some(prepare_directory(directory)?),
         None => None,
     };
+    expect_directory(job)?;
     let problem = refine(job, problem)?;
     if problem.statics.is_some() {
         return super::statics::simulate(job, &problem, json);
-    }
-    if job.vtu && job.output.is_none() {
-        let what = "found --vtu without --output, expected a directory for the files";
-        return Err(Failure::bad_input(what));
     }
     let start = problem.start();
     let simulation = match job.error {
@@ -71,6 +70,12 @@ pub(crate) fn simulate(job: &Job, json: bool, joint_axes: bool) -> Result<u8, Fa
             ))?;
         }
         draw(directory, figures::of_simulation(&problem, &simulation));
+        if job.report {
+            let text = summary(&problem, &simulation);
+            let text = page(&problem, text, &Ends::of_motion(&simulation), None);
+            let text = text.map_err(Failure::numerical)?;
+            write_all(&[(directory.join(REPORT), text.into_bytes())])?;
+        }
         if !job.quiet {
             tell(&format!("results in {}\n", shown(directory)));
         }
@@ -88,6 +93,18 @@ pub(crate) fn simulate(job: &Job, json: bool, joint_axes: bool) -> Result<u8, Fa
         return Err(Failure::numerical(what));
     }
     Ok(DONE)
+}
+
+/// Refuses files that nothing says where to write.
+pub(super) fn expect_directory(job: &Job) -> Result<(), Failure> {
+    let asked = [("--vtu", job.vtu), ("--report", job.report)];
+    let found = asked
+        .iter()
+        .find(|(_, asked)| *asked && job.output.is_none());
+    found.map_or(Ok(()), |(option, _)| {
+        let what = format!("found {option} without --output, expected a directory for the files");
+        Err(Failure::bad_input(what))
+    })
 }
 
 /// The result of a simulation in full precision.

@@ -3,8 +3,10 @@
 use super::aggregates::{add_smoothed, told};
 use super::arguments::Job;
 use super::error_table::table;
-use super::{DONE, Failure, draw, print, shown, tell};
+use super::{DONE, Failure, REPORT, draw, print, shown, tell};
 use crate::driver::analysed::place;
+use crate::driver::ends::Ends;
+use crate::driver::page::page;
 use crate::driver::statics::{StaticDesign, error, figures, precision};
 use crate::problem::Problem;
 use crate::report::{PrecisionOfMesh, plots, prepare_directory, write_all};
@@ -92,12 +94,19 @@ pub(crate) fn simulate(job: &Job, problem: &Problem, json: bool) -> Result<u8, F
             write_all(&[(directory.join("fields.vtu"), fields)])?;
         }
         draw(directory, figures::figures(problem, &[("", &design)], None));
+        if job.report {
+            let text = page(
+                problem,
+                summary(problem, &design),
+                &Ends::of_structure(&design),
+                None,
+            );
+            let text = text.map_err(Failure::numerical)?;
+            write_all(&[(directory.join(REPORT), text.into_bytes())])?;
+        }
         if !job.quiet {
             tell(&format!("results in {}\n", shown(directory)));
         }
-    } else if job.vtu {
-        let what = "found --vtu without --output, expected a directory for the file";
-        return Err(Failure::bad_input(what));
     }
     let lost: Vec<String> = problem
         .function_names

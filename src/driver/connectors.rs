@@ -10,24 +10,50 @@ use crate::report::plots::{Connector, ConnectorKind};
 /// A point of a body from its centre of mass, or of ground.
 type Fixed = (Option<usize>, Vec3<f64>);
 
+/// A connector at some instants, in ground axes.
+pub(super) struct Joined {
+    pub kind: ConnectorKind,
+    /// Whether it joins a body to ground.
+    pub to_ground: bool,
+    /// Its two points at each instant \[m\].
+    pub ends: Vec<[Vec3<f64>; 2]>,
+}
+
 /// The connectors of a model at the instants of a time lapse, in the plane of the view.
 pub(super) fn connectors(
-    (model, run): (&Model<f64>, &Trajectory<f64>),
+    of: (&Model<f64>, &Trajectory<f64>),
     drawing: &Drawing,
     instants: &[usize],
 ) -> Vec<Connector> {
-    let flat = |p: &Vec3<f64>| [drawing.right.dot(p), drawing.up.dot(p)];
+    let flat = |joined: Joined| Connector {
+        kind: joined.kind,
+        to_ground: joined.to_ground,
+        ends: (joined.ends.iter())
+            .map(|ends| ends.each_ref().map(|p| drawing.flat(p)))
+            .collect(),
+    };
+    joined(of, drawing, instants)
+        .into_iter()
+        .map(flat)
+        .collect()
+}
+
+/// The connectors of a model at some instants.
+pub(super) fn joined(
+    (model, run): (&Model<f64>, &Trajectory<f64>),
+    drawing: &Drawing,
+    instants: &[usize],
+) -> Vec<Joined> {
     let place = |k: usize, (body, point): &Fixed| match body {
         Some(body) => Snapshot::of(model, run, k).motion(*body).point(point),
         None => *point,
     };
     let mut all = Vec::new();
     let mut add = |kind, to_ground, ends: &dyn Fn(usize) -> [Vec3<f64>; 2]| {
-        let ends = instants.iter().map(|&k| ends(k).each_ref().map(flat));
-        all.push(Connector {
+        all.push(Joined {
             kind,
             to_ground,
-            ends: ends.collect(),
+            ends: instants.iter().map(|&k| ends(k)).collect(),
         });
     };
     // Points that a joint, spring or arm uses, by body.

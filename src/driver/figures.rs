@@ -1,132 +1,47 @@
 //! The figures of a simulation and of an optimisation.
 
-use super::analysed::Simulated;
 use super::connectors::connectors;
 use super::elastic_figures::{
     colours, deflections, displaced, elastic, has_stress, leave_out_small, limits, patches,
     stresses,
 };
-use super::integration::Integration;
-use super::optimise::{Optimisation, asked};
+use super::ends::Ends;
+use super::optimise::Optimisation;
 use super::shells;
 use super::simulate::Simulation;
 use super::statics::figures as of_structures;
 use super::traces;
-use super::warm_start::WarmStart;
 use crate::functions::evaluate::sample;
 use crate::functions::snapshot::Snapshot;
 use crate::functions::turning::turns;
 use crate::functions::{Function, Instant, Reduction};
 use crate::math::Vec3;
 use crate::problem::{Drawing, Outline, Problem, Trace};
-use crate::report::optimum::DesignValue;
+use crate::report::History;
 use crate::report::plots::{
     Barrier, BodyMotion, EnergyRun, Flight, History as Curves, Motion, Scenery, convergence,
     energy, histories, motion,
 };
-use crate::report::{History, Optimum, ReportError};
-use std::path::{Path, PathBuf};
 
 /// A file's name and content.
 pub(crate) type NamedFile = (&'static str, Vec<u8>);
 
-/// Why the figures of a record cannot be drawn again.
-#[derive(Debug, thiserror::Error)]
-pub(crate) enum RedrawError {
-    /// The document in the record is not a problem that this version can read.
-    #[error("{0}")]
-    Problem(crate::problem::Faults),
-    /// The record lacks a variable of its own problem.
-    #[error("the record has no value for the variable \"{0}\"")]
-    Design(String),
-    /// A figure cannot be drawn.
-    #[error(transparent)]
-    Figure(#[from] ReportError),
-}
-
 /// Figures of an optimisation. Empty ones are left out.
 pub(crate) fn of_optimisation(problem: &Problem, done: &Optimisation) -> Vec<NamedFile> {
-    let ends = [
-        ("initial design", done.start.as_ref()),
-        ("optimal design", done.end.as_ref()),
-    ];
-    of_ends(problem, &ends, &done.history)
+    of_ends(problem, &Ends::of_optimisation(done), &done.history)
 }
 
 /// Figures of the two ends of an optimisation.
-fn of_ends(
-    problem: &Problem,
-    ends: &[(&str, Option<&Simulated>); 2],
-    history: &History,
-) -> Vec<NamedFile> {
-    let (mut motions, mut structures) = (Vec::new(), Vec::new());
-    for (title, end) in ends {
-        match end {
-            Some(Simulated::Motion(simulation)) => motions.push((*title, &**simulation)),
-            Some(Simulated::Statics(at)) => structures.push((*title, &**at)),
-            None => {}
-        }
-    }
+pub(crate) fn of_ends(problem: &Problem, ends: &Ends, history: &History) -> Vec<NamedFile> {
     match problem.statics {
-        Some(_) => of_structures::figures(problem, &structures, Some(history)),
-        None => figures(problem, &motions, Some(history)),
+        Some(_) => of_structures::figures(problem, &ends.structures, Some(history)),
+        None => figures(problem, &ends.motions, Some(history)),
     }
 }
 
 /// Figures of a simulation.
 pub(crate) fn of_simulation(problem: &Problem, simulation: &Simulation) -> Vec<NamedFile> {
     figures(problem, &[("", simulation)], None)
-}
-
-/// Figures of a recorded optimisation, from the problem and the designs in its record, which lies in `directory`.
-/// With the state of its end the motions are those of the run, on the same steps.
-///
-/// # Errors
-/// If the record does not hold a readable problem and a value of each of its variables.
-pub(crate) fn of_record(
-    optimum: &Optimum,
-    history: &History,
-    state: Option<&WarmStart>,
-    directory: &Path,
-) -> Result<Vec<NamedFile>, RedrawError> {
-    let text = optimum.problem.document.to_string();
-    // Paths of files of bodies are relative to the problem file.
-    let file = match &optimum.problem.directory {
-        Some(beside) => directory.join(beside).join(&optimum.problem.file),
-        None => PathBuf::from(&optimum.problem.file),
-    };
-    let file = file.display().to_string();
-    let mut problem = Problem::parse(&text, &file, &[]).map_err(RedrawError::Problem)?;
-    let recorded = |of: fn(&DesignValue) -> f64| {
-        let variables = problem.variables.iter();
-        let values = variables.map(|v| {
-            let found = optimum.design.get(&v.name).map(of);
-            found.ok_or_else(|| RedrawError::Design(v.name.clone()))
-        });
-        values.collect::<Result<Vec<f64>, _>>()
-    };
-    let (first, design) = (recorded(|d| d.start)?, recorded(|d| d.value)?);
-    if state.is_some_and(|state| state.as_written) {
-        problem.lowering = None;
-    }
-    let mut problem = problem.for_optimisation().unwrap_or(problem);
-    problem.restart(&first);
-    let start = Simulated::of(&problem, &first).ok();
-    let asked: Vec<usize> = asked(&problem).collect();
-    let mut integration = Integration::of(&problem, Some(&asked), true);
-    let kept = state.filter(|state| state.fits(&problem));
-    if let Some(kept) = kept.and_then(WarmStart::kept_steps) {
-        integration.restore(kept);
-        integration.see_whole();
-    } else {
-        integration = Integration::of(&problem, None, false);
-    }
-    let end = Simulated::with(&mut integration, &problem, &design).ok();
-    let ends = [
-        ("initial design", start.as_ref()),
-        ("optimal design", end.as_ref()),
-    ];
-    Ok(of_ends(&problem, &ends, history))
 }
 
 fn figures(

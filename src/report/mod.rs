@@ -35,6 +35,7 @@ pub(crate) mod mesh_precision;
 mod number;
 pub(crate) mod optima;
 pub(crate) mod optimum;
+pub(crate) mod page;
 pub(crate) mod plots;
 pub(crate) mod positions;
 pub(crate) mod stability;

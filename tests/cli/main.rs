@@ -7,6 +7,7 @@ mod memory;
 mod names;
 mod parameters;
 mod program;
+mod report;
 mod restart;
 mod results_are_kept;
 mod several_starts;

@@ -30,12 +30,7 @@ pub(crate) fn figures(
     if let Some(history) = history {
         all.push(("convergence.svg", convergence(history)));
     }
-    let view = problem.view_of_structures();
-    let camera = Camera::oblique(view[0], view[1]);
-    let above = match designs.first().and_then(|(_, design)| flat_axes(design)) {
-        Some([right, up]) => Camera::along(right, up),
-        None => camera,
-    };
+    let [camera, above] = cameras(problem, designs);
     let thickness: Vec<Vec<StructureView>> = designs
         .iter()
         .map(|(title, design)| thickness(title, design).into_iter().collect())
@@ -45,13 +40,13 @@ pub(crate) fn figures(
     }
     let deformed: Vec<Vec<StructureView>> = designs
         .iter()
-        .map(|(title, design)| deformed(title, design))
+        .map(|(title, design)| deformed(title, design, 1.0))
         .collect();
     if deformed.iter().any(|row| !row.is_empty()) {
         all.push(("deformed.svg", structure(&deformed, &camera)));
     }
     if let Some((_, design)) = designs.last() {
-        let modes = modes(design);
+        let modes = modes(design, 1.0);
         if !modes.is_empty() {
             let rows: Vec<Vec<StructureView>> = in_pairs(modes);
             all.push(("modes.svg", structure(&rows, &camera)));
@@ -60,6 +55,17 @@ pub(crate) fn figures(
     all.into_iter()
         .filter_map(|(name, svg)| Some((name, svg.ok()?.into_bytes())))
         .collect()
+}
+
+/// From where shapes are seen, and from where thickness is: from above where all is flat.
+pub(super) fn cameras(problem: &Problem, designs: &[(&str, &StaticDesign)]) -> [Camera; 2] {
+    let view = problem.view_of_structures();
+    let camera = Camera::oblique(view[0], view[1]);
+    let above = match designs.first().and_then(|(_, design)| flat_axes(design)) {
+        Some([right, up]) => Camera::along(right, up),
+        None => camera,
+    };
+    [camera, above]
 }
 
 /// Rows of one view each as one row.
@@ -154,7 +160,7 @@ fn view(
 }
 
 /// The thickness of the shells, if there are some.
-fn thickness(title: &str, design: &StaticDesign) -> Option<StructureView> {
+pub(super) fn thickness(title: &str, design: &StaticDesign) -> Option<StructureView> {
     let structure = &design.scene.structure;
     let mesh = &structure.topology.mesh;
     let h = &structure.thickness;
@@ -180,8 +186,9 @@ fn thickness(title: &str, design: &StaticDesign) -> Option<StructureView> {
     Some(view)
 }
 
-/// Displacements of the nodes and the factor that makes them visible.
-fn magnified(design: &StaticDesign, u: &[Vec3<f64>]) -> (Vec<Vec3<f64>>, f64) {
+/// Places of the nodes with the part `share` of displacements that are magnified until they are visible, and the factor
+/// of the whole.
+fn magnified(design: &StaticDesign, u: &[Vec3<f64>], share: f64) -> (Vec<Vec3<f64>>, f64) {
     let largest = u.iter().map(|u| u.norm()).fold(0.0, f64::max);
     let factor = if largest > 0.0 {
         SHOWN * size(design) / largest
@@ -189,12 +196,13 @@ fn magnified(design: &StaticDesign, u: &[Vec3<f64>]) -> (Vec<Vec3<f64>>, f64) {
         0.0
     };
     let pairs = design.scene.structure.nodes.iter().zip(u);
-    (pairs.map(|(x, u)| x + u * factor).collect(), factor)
+    let places = pairs.map(|(x, u)| x + u * (factor * share));
+    (places.collect(), factor)
 }
 
-/// The deformed shape of the first load cases, in colours of stress: von Mises of shells, largest along fibres of
+/// The deformed shape of the first load cases with a part of the displacements, in colours of stress: von Mises of shells, largest along fibres of
 /// beams.
-fn deformed(title: &str, design: &StaticDesign) -> Vec<StructureView> {
+pub(super) fn deformed(title: &str, design: &StaticDesign, share: f64) -> Vec<StructureView> {
     let mesh = &design.scene.structure.topology.mesh;
     let solved = design
         .solutions
@@ -209,7 +217,7 @@ fn deformed(title: &str, design: &StaticDesign) -> Vec<StructureView> {
             along,
         } = of_case(design, case)?;
         let known = along.iter().any(|&stress| stress != UNKNOWN);
-        let (places, factor) = magnified(design, &motion.displacement);
+        let (places, factor) = magnified(design, &motion.displacement, share);
         let yields = yield_stresses(design);
         // The larger of both faces at the four Gauss points of a quarter, in MPa.
         let of_shell = |index: usize, i: usize, j: usize| {
@@ -279,8 +287,8 @@ fn yield_stresses(design: &StaticDesign) -> Vec<f64> {
         .collect()
 }
 
-/// The lowest modes that were found.
-fn modes(design: &StaticDesign) -> Vec<StructureView> {
+/// The lowest modes that were found, with a part of their displacements.
+pub(super) fn modes(design: &StaticDesign, share: f64) -> Vec<StructureView> {
     let mesh = &design.scene.structure.topology.mesh;
     let Some(found) = design.some_modes() else {
         return Vec::new();
@@ -292,7 +300,7 @@ fn modes(design: &StaticDesign) -> Vec<StructureView> {
         .take(MOST_MODES);
     let one = |(k, (x, lambda)): (usize, (&Vec<f64>, &f64))| {
         let motion = design.motion_of_mode(x)?;
-        let (places, factor) = magnified(design, &motion);
+        let (places, factor) = magnified(design, &motion, share);
         let f = lambda.sqrt() / (2.0 * PI);
         let text = format!("mode {}, {f:.2} Hz", k + 1);
         let size = |node: usize| factor * motion[node].norm() / (SHOWN * size(design));

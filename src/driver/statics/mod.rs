@@ -7,6 +7,7 @@ mod inspect;
 mod lifted;
 mod limits;
 pub(crate) mod precision;
+pub(crate) mod stages;
 
 use super::evaluate::Derivative;
 use crate::integrate::WorkCounts;

@@ -1,0 +1,88 @@
+//! What moves on a page: bodies, joints and paths in ground axes at some instants.
+
+use serde::Serialize;
+
+/// A machine in motion, a structure under load, or a mode.
+#[derive(Clone, Debug, PartialEq, Serialize)]
+pub(crate) struct Stage {
+    /// What it is, such as `optimal design`.
+    pub title: String,
+    /// Instants \[s\]; of structures the part of the load, 0 and 1.
+    pub times: Vec<f64>,
+    /// Whether it swings about its first frame with the difference to its second: a mode.
+    pub swings: bool,
+    /// What `times` counts, such as `t [s]`.
+    pub clock: &'static str,
+    /// The bodies.
+    pub bodies: Vec<Body>,
+    /// Joints, rods, springs and arms.
+    pub links: Vec<Link>,
+    /// Paths of points \[m\].
+    pub paths: Vec<Vec<[f64; 3]>>,
+    /// Directions to the right and up of the first view.
+    pub view: [[f64; 3]; 2],
+    /// Height along `up` of the ground on which a projectile lands \[m\].
+    pub ground: Option<f64>,
+    /// Position and height of a barrier \[m\].
+    pub barrier: Option<[f64; 2]>,
+    /// Least and largest value of the colours, if some are shown.
+    pub range: Option<[f64; 2]>,
+    /// What the colours mean.
+    pub label: String,
+}
+
+/// A body.
+#[derive(Clone, Debug, PartialEq, Serialize)]
+pub(crate) struct Body {
+    /// Its name.
+    pub name: String,
+    /// Its shape.
+    pub shape: Shape,
+}
+
+/// The shape of a body. The pose of a rigid one at an instant: its origin \[m\], then the first and the second axis.
+#[derive(Clone, Debug, PartialEq, Serialize)]
+#[serde(tag = "kind", rename_all = "lowercase")]
+pub(crate) enum Shape {
+    /// The convex hull of points.
+    Hull {
+        /// The points in body axes \[m\].
+        points: Vec<[f64; 3]>,
+        /// The pose at each instant.
+        poses: Vec<[f64; 9]>,
+    },
+    /// A sphere about the origin.
+    Sphere {
+        /// Its radius \[m\].
+        radius: f64,
+        /// The pose at each instant.
+        poses: Vec<[f64; 9]>,
+    },
+    /// Lines from the origin.
+    Spokes {
+        /// Their ends in body axes \[m\].
+        points: Vec<[f64; 3]>,
+        /// The pose at each instant.
+        poses: Vec<[f64; 9]>,
+    },
+    /// Faces and lines that deform.
+    Mesh {
+        /// The points of each face, or the two of a line.
+        faces: Vec<Vec<usize>>,
+        /// The points in ground axes at each instant, x y z one after the other \[m\].
+        places: Vec<Vec<f64>>,
+        /// The value of each face at each instant; empty without colours.
+        values: Vec<Vec<f64>>,
+    },
+}
+
+/// A joint, rod, spring or arm.
+#[derive(Clone, Debug, PartialEq, Serialize)]
+pub(crate) struct Link {
+    /// `hinge`, `slider`, `rod`, `spring` or `arm`.
+    pub kind: &'static str,
+    /// Whether it joins a body to ground.
+    pub grounded: bool,
+    /// Its two points at each instant \[m\]; the second of a slider is a point of its line.
+    pub ends: Vec<[f64; 6]>,
+}

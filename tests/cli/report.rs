@@ -1,0 +1,221 @@
+//! `--report` and `optimize report`: one page that needs nothing else, in a browser where there is one.
+
+use crate::program::{HAMMER, changed, expect, read, scratch};
+use serde_json::Value;
+use std::path::Path;
+use std::process::Command;
+
+const PLATE: &str = concat!(env!("CARGO_MANIFEST_DIR"), "/problems/plate_patches.json");
+const FLEXIBLE: &str = concat!(
+    env!("CARGO_MANIFEST_DIR"),
+    "/problems/flexible/spin_up.json"
+);
+
+/// The data of a page.
+fn data(page: &str) -> Value {
+    let (_, rest) = page
+        .split_once("id=\"data\">")
+        .expect("the element with the data");
+    let (text, _) = rest.split_once("</script>").expect("its end");
+    serde_json::from_str(text).expect("JSON")
+}
+
+/// Nothing is loaded: no element names another file or address.
+fn stands_alone(page: &str) {
+    for word in [
+        "src=",
+        "href=",
+        "url(",
+        "@import",
+        "fetch(",
+        "XMLHttpRequest",
+        "import(",
+    ] {
+        assert!(!page.contains(word), "{word}");
+    }
+}
+
+#[test]
+fn an_optimisation_and_its_record_give_the_same_page() {
+    let at = scratch();
+    expect(0, at.path(), &[HAMMER, "--output", "out", "--report"]);
+    let page = read(&at.path().join("out/report.html"));
+    stands_alone(&page);
+    let shown = data(&page);
+    let titles = shown["stages"].as_array().expect("stages").iter();
+    let titles: Vec<&str> = titles.filter_map(|own| own["title"].as_str()).collect();
+    assert_eq!(titles, ["initial design", "optimal design"]);
+    let record: Value =
+        serde_json::from_str(&read(&at.path().join("out/optimum.json"))).expect("JSON");
+    assert_eq!(shown["optimum"], record);
+    for stage in shown["stages"].as_array().expect("stages") {
+        let frames = stage["times"].as_array().expect("times").len();
+        assert!((2..=240).contains(&frames), "{frames}");
+        for body in stage["bodies"].as_array().expect("bodies") {
+            let poses = body["shape"]["poses"].as_array().expect("poses");
+            assert_eq!(poses.len(), frames);
+        }
+    }
+    std::fs::remove_file(at.path().join("out/report.html")).expect("removed");
+    expect(0, at.path(), &["report", "out"]);
+    let again = data(&read(&at.path().join("out/report.html")));
+    for key in ["stages", "charts", "optimum"] {
+        assert_eq!(shown[key], again[key], "{key}");
+    }
+}
+
+/// A page is written on request alone, and the request is refused where nothing says where to.
+#[test]
+fn no_page_is_written_that_nobody_asked_for() {
+    let at = scratch();
+    expect(0, at.path(), &["simulate", HAMMER, "--output", "out"]);
+    assert!(!at.path().join("out/report.html").exists());
+    for problem in [HAMMER, PLATE] {
+        let ran = expect(2, at.path(), &["simulate", problem, "--report"]);
+        assert!(ran.err.contains("--report without --output"), "{}", ran.err);
+    }
+    let ran = expect(2, at.path(), &["report", "nowhere"]);
+    assert!(ran.err.contains("nowhere"), "{}", ran.err);
+}
+
+/// Texts of a file stay texts.
+#[test]
+fn no_text_of_a_problem_ends_its_element() {
+    let at = scratch();
+    let end = "</script><script>alert(1)</script><!--";
+    let file = changed(at.path(), "own.json", |file| {
+        file["description"] = end.into()
+    });
+    expect(
+        0,
+        at.path(),
+        &["simulate", &file, "--output", "out", "--report"],
+    );
+    let page = read(&at.path().join("out/report.html"));
+    assert!(!page.contains("alert(1)</script>"));
+    assert_eq!(data(&page)["description"], end);
+}
+
+/// A structure loads from 0 to 1, and a body that deforms has the same faces in all frames.
+#[test]
+fn structures_and_bodies_that_deform_are_meshes() {
+    let at = scratch();
+    for (problem, frames) in [(PLATE, 2), (FLEXIBLE, 12)] {
+        expect(
+            0,
+            at.path(),
+            &["simulate", problem, "--output", "out", "--report"],
+        );
+        let page = read(&at.path().join("out/report.html"));
+        assert!(page.len() < 3_000_000, "{problem}: {}", page.len());
+        let shown = data(&page);
+        let stages = shown["stages"].as_array().expect("stages");
+        let last = stages.last().expect("a stage");
+        let meshes = last["bodies"].as_array().expect("bodies").iter();
+        let meshes: Vec<&Value> = meshes
+            .map(|body| &body["shape"])
+            .filter(|shape| shape["kind"] == "mesh")
+            .collect();
+        assert!(!meshes.is_empty(), "{problem}");
+        for mesh in meshes {
+            let places = mesh["places"].as_array().expect("places");
+            assert!(places.len() >= frames, "{problem}: {}", places.len());
+            let values = mesh["values"].as_array().expect("values");
+            let faces = mesh["faces"].as_array().expect("faces");
+            for (places, values) in places.iter().zip(values) {
+                let [places, values] =
+                    [places, values].map(|v| v.as_array().expect("a list").len());
+                assert!(values == faces.len() || values == 0, "{problem}: {values}");
+                assert_eq!(places % 3, 0);
+                let largest = faces.iter().flat_map(|f| f.as_array().expect("a face"));
+                let largest = largest.filter_map(Value::as_u64).max().expect("a corner");
+                assert!((largest as usize) < places / 3, "{problem}");
+            }
+        }
+    }
+}
+
+/// A program that shows pages, if there is one.
+fn browser() -> Option<&'static str> {
+    let names = ["chromium", "chromium-browser", "google-chrome", "chrome"];
+    let found = names.into_iter().find(|name| {
+        let ran = Command::new(name).arg("--version").output();
+        ran.is_ok_and(|ran| ran.status.success())
+    });
+    if found.is_none() {
+        println!("there is no browser: the pages are not opened");
+    }
+    found
+}
+
+/// What the browser has made of a page after its programs ran, and what it complained about.
+fn opened(browser: &str, page: &Path, at: &str, more: &[&str]) -> (String, String) {
+    let own = tempfile::tempdir().expect("a directory");
+    let ran = Command::new(browser)
+        .args([
+            "--headless=new",
+            "--no-sandbox",
+            "--disable-gpu",
+            "--disable-dev-shm-usage",
+            "--hide-scrollbars",
+        ])
+        .args([
+            "--enable-logging=stderr",
+            "--v=0",
+            "--virtual-time-budget=3000",
+        ])
+        .arg(format!("--user-data-dir={}", own.path().display()))
+        .args(more)
+        .arg(format!("file://{}{at}", page.display()))
+        .output()
+        .expect("a browser");
+    let text = |bytes: &[u8]| String::from_utf8_lossy(bytes).into_owned();
+    let complaints = text(&ran.stderr);
+    let said = complaints.lines().filter(|line| line.contains("CONSOLE"));
+    (text(&ran.stdout), said.collect())
+}
+
+/// In a browser: no complaint, the program of the page runs to its end, tables and alternative texts are there, an instant
+/// of the address shows another picture, and so do a dark scheme and the width of a phone.
+#[test]
+fn a_browser_shows_the_machine_at_an_instant() {
+    let Some(browser) = browser() else { return };
+    let at = scratch();
+    expect(0, at.path(), &[HAMMER, "--output", "out", "--report"]);
+    let page = at.path().join("out/report.html");
+    let (dom, said) = opened(browser, &page, "#t=0.2", &["--dump-dom"]);
+    assert_eq!(said, "");
+    for part in [
+        "data-ready=\"true\"",
+        "id=\"verdict\"",
+        "aria-label=",
+        "t = 0.2000 s",
+        "<table>",
+    ] {
+        assert!(
+            dom.contains(part),
+            "{part}: {}",
+            &dom[..dom.len().min(3000)]
+        );
+    }
+    let picture = |name: &str, at_time: &str, more: &[&str]| {
+        let path = at.path().join(name);
+        let shot = format!("--screenshot={}", path.display());
+        let (_, said) = opened(browser, &page, at_time, &[&[shot.as_str()], more].concat());
+        assert_eq!(said, "", "{name}");
+        std::fs::read(&path).expect("a picture")
+    };
+    let wide = ["--window-size=1100,900"];
+    let first = picture("a.png", "#t=0", &wide);
+    assert!(first == picture("b.png", "#t=0", &wide), "the same instant");
+    assert!(
+        first != picture("c.png", "#t=0.2", &wide),
+        "another instant"
+    );
+    let dark = [
+        "--window-size=1100,900",
+        "--blink-settings=preferredColorScheme=0",
+    ];
+    assert!(first != picture("d.png", "#t=0", &dark), "dark");
+    picture("e.png", "#t=0", &["--window-size=390,800"]);
+}
