@@ -1,5 +1,6 @@
 //! The arguments of `optimize`.
 
+use super::new::Starter;
 use super::range::{Range, range};
 use clap::{Args, Parser, Subcommand};
 use std::path::PathBuf;
@@ -113,6 +114,14 @@ pub(crate) struct Job {
 /// The other commands.
 #[derive(Debug, Subcommand)]
 pub(crate) enum Command {
+    /// Write a problem file to start from.
+    New {
+        /// The file, with or without .json. Its name becomes that of the problem.
+        path: PathBuf,
+        /// The machine.
+        #[arg(long, value_enum, default_value_t = Starter::Pendulum)]
+        from: Starter,
+    },
     /// Simulate the problem's start and report its functions, energy and constraint drift. With
     /// --output it draws the motion and writes simulation.csv (energy, momentum, drift, joint
     /// reactions), motion.csv (all bodies) and functions.csv (all quantities) over time.

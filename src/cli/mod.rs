@@ -6,6 +6,7 @@ mod compare;
 mod error_table;
 mod explain;
 mod interrupt;
+mod new;
 mod optimise;
 mod parameters;
 mod progress;
@@ -124,6 +125,7 @@ pub fn run(arguments: impl Iterator<Item = OsString>) -> ExitCode {
     };
     interrupt::listen();
     let done = match arguments.command {
+        Some(Command::New { path, from }) => new::new(&path, from),
         Some(Command::Simulate {
             job,
             json,

@@ -12,6 +12,7 @@ mod restart;
 mod results_are_kept;
 mod several_starts;
 mod stability;
+mod starters;
 mod statics;
 mod verdicts;
 mod work_precision;
