@@ -181,6 +181,13 @@ pub(crate) enum Command {
         /// Directory with optimum.json and history.csv.
         directory: PathBuf,
     },
+    /// Print completions for a shell.
+    Completions {
+        /// The shell.
+        shell: clap_complete::Shell,
+    },
+    /// Print the manual page, in the format of man.
+    Manual,
     /// Print the JSON Schema of problem files.
     Schema,
 }

@@ -5,6 +5,7 @@ mod arguments;
 mod compare;
 mod error_table;
 mod explain;
+mod installation;
 mod interrupt;
 mod new;
 mod optimise;
@@ -125,6 +126,8 @@ pub fn run(arguments: impl Iterator<Item = OsString>) -> ExitCode {
     };
     interrupt::listen();
     let done = match arguments.command {
+        Some(Command::Completions { shell }) => installation::completions(shell),
+        Some(Command::Manual) => installation::manual(),
         Some(Command::New { path, from }) => new::new(&path, from),
         Some(Command::Simulate {
             job,
@@ -212,6 +215,12 @@ fn read(job: &Job) -> Result<Problem, Failure> {
     Ok(problem)
 }
 
+/// Whether a file is the record of an optimum.
+fn is_record(path: &Path) -> bool {
+    let text = std::fs::read_to_string(path).unwrap_or_default();
+    Optimum::from_json(&text).is_ok()
+}
+
 fn overrides(job: &Job) -> Result<Vec<Override>, Failure> {
     let given = job.set.iter().map(|text| Override::parse(text));
     given.collect::<Result<_, _>>().map_err(Failure::bad_input)
@@ -224,7 +233,15 @@ fn read_with(job: &Job, overrides: &[Override]) -> Result<Problem, Failure> {
         let unread = File::open(&job.problem).and_then(|mut file| file.read(&mut byte));
         let unread = unread.err();
         let code = unread.map_or(BAD_INPUT, |error| code_of_reading(&error));
-        Failure::new(code, faults)
+        match is_record(&job.problem) {
+            true => Failure::bad_input(format!(
+                "{0}: found the record of an optimum, expected a problem; `optimize PROBLEM --from {0}` starts from it, \
+                 `optimize report {1}` shows it",
+                shown(&job.problem),
+                shown(job.problem.parent().unwrap_or(Path::new(".")))
+            )),
+            false => Failure::new(code, faults),
+        }
     })?;
     if job.vtu && problem.statics.is_none() && !problem.has_shells() {
         return Err(Failure::bad_input(format!(

@@ -157,7 +157,7 @@ pub(crate) fn optimise(job: &Job, course: &RunOptions) -> Result<u8, Failure> {
     }
     match (&done.end, recorded && job.vtu) {
         (Some(driver::Simulated::Statics(end)), true) => {
-            let fields = driver::statics::figures::fields(end).into_bytes();
+            let fields = driver::statics::fields::fields(end).into_bytes();
             write_all(&[(directory.join("fields.vtu"), fields)])?;
         }
         (Some(driver::Simulated::Motion(end)), true) => {

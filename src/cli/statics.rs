@@ -7,7 +7,7 @@ use super::{DONE, Failure, REPORT, draw, print, shown, tell};
 use crate::driver::analysed::place;
 use crate::driver::ends::Ends;
 use crate::driver::page::page;
-use crate::driver::statics::{StaticDesign, error, figures, precision};
+use crate::driver::statics::{StaticDesign, error, fields, figures, precision};
 use crate::problem::Problem;
 use crate::report::{PrecisionOfMesh, plots, prepare_directory, write_all};
 use serde_json::{Map, Value, json};
@@ -90,7 +90,7 @@ pub(crate) fn simulate(job: &Job, problem: &Problem, json: bool) -> Result<u8, F
     }
     if let Some(directory) = &job.output {
         if job.vtu {
-            let fields = figures::fields(&design).into_bytes();
+            let fields = fields::fields(&design).into_bytes();
             write_all(&[(directory.join("fields.vtu"), fields)])?;
         }
         draw(directory, figures::figures(problem, &[("", &design)], None));

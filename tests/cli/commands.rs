@@ -594,15 +594,17 @@ fn the_documents_name_commands_and_options_that_exist() {
     }
     // Options of cargo, git and the linter.
     known += "--release --all-targets --no-deps --bench --test --lib --check --stat --locked --open \
-              --tool --threshold --auto --call-graph --nocapture --include-ignored";
+              --path --tool --threshold --auto --call-graph --nocapture --include-ignored";
     let options: Vec<&str> = known
         .split(|c: char| !(c.is_ascii_lowercase() || c == '-'))
         .collect();
     let mut paths: Vec<_> = ["README.md", "CONTRIBUTING.md"]
         .map(|name| root.join(name))
         .into();
-    let docs = std::fs::read_dir(root.join("docs")).expect("a directory");
-    paths.extend(docs.flatten().map(|entry| entry.path()));
+    for folder in ["docs", "docs/tutorials"] {
+        let docs = std::fs::read_dir(root.join(folder)).expect("a directory");
+        paths.extend(docs.flatten().map(|entry| entry.path()));
+    }
     let (mut wrong, mut count) = (Vec::new(), 0);
     for path in paths
         .iter()

@@ -3,6 +3,7 @@
 mod before_work;
 mod beyond_one_run;
 mod commands;
+mod installation;
 mod memory;
 mod names;
 mod parameters;
@@ -14,5 +15,6 @@ mod several_starts;
 mod stability;
 mod starters;
 mod statics;
+mod tutorials;
 mod verdicts;
 mod work_precision;

@@ -1,6 +1,6 @@
 //! Problems of structures that do not move: gradients, estimated errors, optima, faults, fields.
 
-use flexbody::driver::statics::{StaticDesign, error, figures};
+use flexbody::driver::statics::{StaticDesign, error, fields};
 use flexbody::driver::{CheckedDerivative, KnownEvaluations, Optimisation, check, optimise};
 use flexbody::problem::{Override, Problem};
 use serde_json::Value;
@@ -387,7 +387,7 @@ fn files_of_fields_have_cells_whose_middles_are_in_the_middle() {
         "scordelis_lo",
         &["/structures/roof/mesh/curved_panel/elements=[8,3]"],
     );
-    let text = figures::fields(&solved(&problem));
+    let text = fields::fields(&solved(&problem));
     let array = |name: &str| -> Vec<f64> {
         let (_, rest) = text.split_once(&format!("Name=\"{name}\"")).expect(name);
         let (_, rest) = rest.split_once('>').expect("the end of the tag");

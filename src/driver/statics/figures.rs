@@ -1,12 +1,11 @@
-//! Pictures of structures: thickness, deformed shape with stress, mode shapes; and their fields for files.
+//! Pictures of structures: thickness, deformed shape with stress, mode shapes.
 
 use super::StaticDesign;
-use crate::driver::shell_fields::{UNKNOWN, name_of_stress, name_of_thickness};
+use crate::driver::shell_fields::UNKNOWN;
 use crate::math::Vec3;
 use crate::problem::{BeamFibres, Problem, larger};
 use crate::report::History;
 use crate::report::plots::{Camera, StructureView, convergence, structure};
-use crate::report::vtu::{Fields, vtu};
 use crate::structures::beam::{BEAM_NODES, Beam};
 use crate::structures::functions::Solved;
 use crate::structures::mesh::Mesh;
@@ -38,10 +37,12 @@ pub(crate) fn figures(
     if thickness.iter().any(|row: &Vec<_>| !row.is_empty()) {
         all.push(("thickness.svg", structure(&in_one_row(thickness), &above)));
     }
+    let factors = factors(designs);
     let deformed: Vec<Vec<StructureView>> = designs
         .iter()
-        .map(|(title, design)| deformed(title, design, 1.0))
+        .map(|(title, design)| deformed(title, design, &factors, 1.0))
         .collect();
+    let deformed = on_one_scale(deformed);
     if deformed.iter().any(|row| !row.is_empty()) {
         all.push(("deformed.svg", structure(&deformed, &camera)));
     }
@@ -200,9 +201,58 @@ fn magnified(design: &StaticDesign, u: &[Vec3<f64>], share: f64) -> (Vec<Vec3<f6
     (places.collect(), factor)
 }
 
+/// The factors that make displacements visible, by load case: the same for all designs, so that they can be compared.
+pub(super) fn factors(designs: &[(&str, &StaticDesign)]) -> Vec<f64> {
+    let Some((_, first)) = designs.first() else {
+        return Vec::new();
+    };
+    let of_case = |case: usize| {
+        let solved = designs
+            .iter()
+            .filter(|(_, own)| !own.solutions[case].is_empty());
+        let largest = solved.filter_map(|(_, own)| {
+            let motion = own.with_solved(|solved| {
+                (solved.problem).motion(solved.structure, &solved.solutions[case])
+            })?;
+            let sizes = motion.displacement.iter().map(|u| u.norm());
+            Some(sizes.fold(0.0, f64::max))
+        });
+        let largest = largest.fold(0.0, f64::max);
+        let size = designs.iter().map(|(_, own)| size(own)).fold(0.0, f64::max);
+        if largest > 0.0 {
+            SHOWN * size / largest
+        } else {
+            0.0
+        }
+    };
+    (0..first.solutions.len()).map(of_case).collect()
+}
+
+/// Gives views of the same load case one scale of colours.
+fn on_one_scale(mut rows: Vec<Vec<StructureView>>) -> Vec<Vec<StructureView>> {
+    let most = rows.iter().map(Vec::len).max().unwrap_or(0);
+    for column in 0..most {
+        let ranges = rows
+            .iter()
+            .filter_map(|row| row.get(column))
+            .map(|own| own.range);
+        let Some(range) = ranges.reduce(|a, b| [a[0].min(b[0]), a[1].max(b[1])]) else {
+            continue;
+        };
+        let all = rows.iter_mut().filter_map(|row| row.get_mut(column));
+        all.for_each(|own| own.range = range);
+    }
+    rows
+}
+
 /// The deformed shape of the first load cases with a part of the displacements, in colours of stress: von Mises of shells, largest along fibres of
 /// beams.
-pub(super) fn deformed(title: &str, design: &StaticDesign, share: f64) -> Vec<StructureView> {
+pub(super) fn deformed(
+    title: &str,
+    design: &StaticDesign,
+    factors: &[f64],
+    share: f64,
+) -> Vec<StructureView> {
     let mesh = &design.scene.structure.topology.mesh;
     let solved = design
         .solutions
@@ -217,7 +267,14 @@ pub(super) fn deformed(title: &str, design: &StaticDesign, share: f64) -> Vec<St
             along,
         } = of_case(design, case)?;
         let known = along.iter().any(|&stress| stress != UNKNOWN);
-        let (places, factor) = magnified(design, &motion.displacement, share);
+        let factor = factors[case];
+        let pairs = design
+            .scene
+            .structure
+            .nodes
+            .iter()
+            .zip(&motion.displacement);
+        let places: Vec<Vec3<f64>> = pairs.map(|(x, u)| x + u * (factor * share)).collect();
         let yields = yield_stresses(design);
         // The larger of both faces at the four Gauss points of a quarter, in MPa.
         let of_shell = |index: usize, i: usize, j: usize| {
@@ -252,15 +309,15 @@ pub(super) fn deformed(title: &str, design: &StaticDesign, share: f64) -> Vec<St
 }
 
 /// What a load case makes.
-struct OfCase {
-    motion: NodalMotion<f64>,
+pub(super) struct OfCase {
+    pub motion: NodalMotion<f64>,
     /// σ_v / σ_yield of each shell at its points.
-    stress: Vec<[f64; STRESS_POINTS]>,
+    pub stress: Vec<[f64; STRESS_POINTS]>,
     /// The largest |σ| along the outer fibres of each beam \[Pa\]; [`UNKNOWN`] of sections without size.
-    along: Vec<f64>,
+    pub along: Vec<f64>,
 }
 
-fn of_case(design: &StaticDesign, case: usize) -> Option<OfCase> {
+pub(super) fn of_case(design: &StaticDesign, case: usize) -> Option<OfCase> {
     design.with_solved(|solved| OfCase {
         motion: (solved.problem).motion(solved.structure, &solved.solutions[case]),
         stress: solved.stress_field(case),
@@ -279,7 +336,7 @@ fn beam_stresses(solved: &Solved<f64>, case: usize) -> Vec<f64> {
 }
 
 /// Yield stress of each shell \[Pa\], which stresses are relative to.
-fn yield_stresses(design: &StaticDesign) -> Vec<f64> {
+pub(super) fn yield_stresses(design: &StaticDesign) -> Vec<f64> {
     let structure = &design.scene.structure;
     let numbers = structure.topology.material.iter();
     numbers
@@ -319,60 +376,4 @@ pub(super) fn modes(design: &StaticDesign, share: f64) -> Vec<StructureView> {
         Some(view)
     };
     pairs.enumerate().filter_map(one).collect()
-}
-
-/// Fields of a design: displacements of each load case, modes, thickness, stresses.
-pub(crate) fn fields(design: &StaticDesign) -> String {
-    let structure = &design.scene.structure;
-    let mesh = &structure.topology.mesh;
-    let list = |all: &[Vec3<f64>]| all.iter().map(|v| (*v).into()).collect::<Vec<[f64; 3]>>();
-    let mut fields = Fields {
-        nodes: list(&structure.nodes),
-        shells: mesh.shells.clone(),
-        beams: mesh.beams.clone(),
-        ..Fields::default()
-    };
-    let mut thickness = structure.thickness.clone();
-    thickness.resize(mesh.shells.len() + mesh.beams.len(), 0.0);
-    let name = name_of_thickness(mesh.beams.is_empty());
-    fields.of_elements.push((name.to_owned(), thickness));
-    for (case, name) in design.statics.cases.iter().enumerate() {
-        if design.solutions[case].is_empty() {
-            continue;
-        }
-        let Some(OfCase {
-            motion,
-            stress,
-            along,
-        }) = of_case(design, case)
-        else {
-            continue;
-        };
-        let displacement = list(&motion.displacement);
-        fields
-            .vectors
-            .push((format!("displacement, {name} [m]"), displacement));
-        let rotation = list(&motion.rotation);
-        fields
-            .vectors
-            .push((format!("rotation, {name} [rad]"), rotation));
-        let pairs = stress.iter().zip(yield_stresses(design));
-        let largest = pairs.map(|(all, y)| y * all.iter().copied().fold(0.0, f64::max));
-        let of = format!(", {name}");
-        let name = name_of_stress(mesh.shells.is_empty(), &along, &of);
-        fields
-            .of_elements
-            .push((name, largest.chain(along).collect()));
-    }
-    if let Some(found) = design.some_modes() {
-        for (k, x) in found.vectors.iter().enumerate() {
-            let f = found.eigenvalues[k].sqrt() / (2.0 * PI);
-            if let Some(motion) = design.motion_of_mode(x) {
-                fields
-                    .vectors
-                    .push((format!("mode {}, {f:.6} Hz", k + 1), list(&motion)));
-            }
-        }
-    }
-    vtu(&fields)
 }

@@ -2,6 +2,7 @@
 
 pub(crate) mod check;
 pub(crate) mod error;
+pub(crate) mod fields;
 pub(crate) mod figures;
 mod inspect;
 mod lifted;

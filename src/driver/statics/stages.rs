@@ -1,7 +1,7 @@
 //! Structures on a page: thickness, shapes under load, modes.
 
 use super::StaticDesign;
-use super::figures::{cameras, deformed, modes, thickness};
+use super::figures::{cameras, deformed, factors, modes, thickness};
 use crate::problem::Problem;
 use crate::report::page::{Body, Shape, Stage, rounded};
 use crate::report::plots::{Camera, StructureView};
@@ -20,8 +20,9 @@ pub(crate) fn stages(problem: &Problem, designs: &[(&str, &StaticDesign)]) -> Ve
         let stages = pairs.map(|(from, to)| stage(&[from, to], view, swings));
         stages.collect::<Vec<Stage>>()
     };
+    let factors = factors(designs);
     for (title, design) in each() {
-        let both = [0.0, 1.0].map(|share| deformed(title, design, share));
+        let both = [0.0, 1.0].map(|share| deformed(title, design, &factors, share));
         let [from, to] = both;
         all.extend(pairs(from, to, false));
     }
