@@ -61,6 +61,10 @@ pub(crate) struct RunOptions {
     /// code 1 if it is not.
     #[arg(long)]
     pub second_order: bool,
+    /// Rewrites report.html with the convergence so far after every iteration, at most once a second. A browser that has it
+    /// open shows the newest every two seconds; at the end it is the report.
+    #[arg(long, conflicts_with_all = ["starts", "sweep"])]
+    pub watch: bool,
     /// Skips the certificate of the gradients. It compares one directional derivative of every
     /// function by the adjoint with the complex step, at start and optimum; exit code 1 if they
     /// differ.
@@ -129,6 +133,9 @@ pub(crate) enum Command {
         /// The problem.
         #[command(flatten)]
         job: Job,
+        /// Takes the design of an optimum.json (or its directory), by names of variables.
+        #[arg(long, value_name = "FILE")]
+        from: Option<PathBuf>,
         /// Prints JSON.
         #[arg(long)]
         json: bool,
@@ -142,6 +149,9 @@ pub(crate) enum Command {
         /// The problem.
         #[command(flatten)]
         job: Job,
+        /// Takes the design of an optimum.json (or its directory), by names of variables.
+        #[arg(long, value_name = "FILE")]
+        from: Option<PathBuf>,
         /// Largest relative difference that passes.
         #[arg(long, default_value_t = 1e-10, value_parser = positive)]
         tolerance: f64,

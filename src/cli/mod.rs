@@ -8,6 +8,7 @@ mod explain;
 mod installation;
 mod interrupt;
 mod new;
+mod one_start;
 mod optimise;
 mod parameters;
 mod progress;
@@ -131,10 +132,15 @@ pub fn run(arguments: impl Iterator<Item = OsString>) -> ExitCode {
         Some(Command::New { path, from }) => new::new(&path, from),
         Some(Command::Simulate {
             job,
+            from,
             json,
             joint_axes,
-        }) => simulate::simulate(&job, json, joint_axes),
-        Some(Command::Check { job, tolerance }) => simulate::check(&job, tolerance),
+        }) => simulate::simulate(&job, from.as_deref(), json, joint_axes),
+        Some(Command::Check {
+            job,
+            from,
+            tolerance,
+        }) => simulate::check(&job, from.as_deref(), tolerance),
         Some(Command::Explain { job, json }) => explain::explain(&job, json),
         Some(Command::WorkPrecision(asked)) => work_precision::measure(&asked),
         Some(Command::Stability(asked)) => stability::stability(&asked),
@@ -235,7 +241,7 @@ fn read_with(job: &Job, overrides: &[Override]) -> Result<Problem, Failure> {
         let code = unread.map_or(BAD_INPUT, |error| code_of_reading(&error));
         match is_record(&job.problem) {
             true => Failure::bad_input(format!(
-                "{0}: found the record of an optimum, expected a problem; `optimize PROBLEM --from {0}` starts from it, \
+                "{0}: found the record of an optimum, expected a problem; `optimize PROBLEM --from {0}` and `simulate` take its design, \
                  `optimize report {1}` shows it",
                 shown(&job.problem),
                 shown(job.problem.parent().unwrap_or(Path::new(".")))

@@ -1,9 +1,9 @@
 //! `optimize PROBLEM`: the default job.
 
 use super::arguments::{Job, RunOptions};
+use super::one_start::one;
 use super::parameters::{Parameter, add_sensitivities, parameter, sweep};
-use super::progress::show;
-use super::records::{Records, Start, changed, refuse_without_run};
+use super::records::{Records, Start, refuse_without_run};
 use super::starts::{several, spread};
 use super::{
     DONE, Failure, INTERRUPTED, NOT_REACHED, NUMERICAL_FAILURE, REPORT, draw, interrupt, print,
@@ -16,11 +16,8 @@ use crate::optimiser::{Counts, Status};
 use crate::problem::Problem;
 use crate::report::optimum::Curvature;
 use crate::report::{
-    History, HistoryLog, ReportError, atomic_write, path_between, prepare_directory, summary,
-    write_all,
+    ReportError, atomic_write, path_between, prepare_directory, summary, write_all,
 };
-use std::cell::RefCell;
-use std::ops::ControlFlow;
 use std::path::{Path, PathBuf};
 use std::sync::Mutex;
 use std::time::Instant;
@@ -28,7 +25,7 @@ use std::time::Instant;
 /// The record of the optimum.
 const OPTIMUM: &str = "optimum.json";
 /// The history during the run. The other results are still those of an earlier run.
-const PARTIAL: &str = "history.partial.csv";
+pub(super) const PARTIAL: &str = "history.partial.csv";
 /// The state of the optimiser, for a warm start.
 pub(super) const STATE: &str = "state.json";
 /// The distinct optima of several starts.
@@ -90,7 +87,7 @@ pub(crate) fn optimise(job: &Job, course: &RunOptions) -> Result<u8, Failure> {
                 state.as_ref(),
                 &records,
                 &stopped,
-                job.quiet,
+                (job.quiet, course.watch),
             )?;
             (problem, done, Start::Only, None, lost)
         }
@@ -148,7 +145,7 @@ pub(crate) fn optimise(job: &Job, course: &RunOptions) -> Result<u8, Failure> {
     if recorded {
         draw(&directory, figures::of_optimisation(&problem, &done));
     }
-    if recorded && job.report {
+    if recorded && (job.report || course.watch) {
         let ends = Ends::of_optimisation(&done);
         let of_run = Some((&done.optimum, &done.history));
         let text = page(&problem, summary(&done.optimum), &ends, of_run);
@@ -326,7 +323,7 @@ fn complete(problem: &Problem, job: &Job) -> Result<(), Failure> {
 
 /// Moves the start to the design of another optimum. Returns its state, if there is one of the same
 /// design and problem.
-fn start_from(problem: &mut Problem, from: &Path) -> Result<Option<WarmStart>, Failure> {
+pub(super) fn start_from(problem: &mut Problem, from: &Path) -> Result<Option<WarmStart>, Failure> {
     let (record, optimum) = record(from)?;
     let mut start = problem.start();
     let mut known = 0;
@@ -358,48 +355,4 @@ fn start_from(problem: &mut Problem, from: &Path) -> Result<Option<WarmStart>, F
     let state = std::fs::read(record.with_file_name(STATE)).ok();
     let state = state.and_then(|text| serde_json::from_slice::<WarmStart>(&text).ok());
     Ok(state.filter(|state| state.fits(problem) && state.is_at(&start)))
-}
-
-/// One optimisation, which writes its evaluations and iterations to the disk as they happen. The
-/// first failure to write ends it and is returned with the best design so far.
-fn one(
-    problem: &Problem,
-    (file, directory): (&str, &Path),
-    state: Option<&WarmStart>,
-    records: &Records,
-    stopped: &dyn Fn() -> bool,
-    quiet: bool,
-) -> Result<(Optimisation, Option<ReportError>), Failure> {
-    let opened = records.open(Start::Only, problem)?;
-    if !quiet {
-        tell(&records.resumed(opened.known));
-        tell(&changed(&opened.changes));
-    }
-    let mut log = HistoryLog::new(&directory.join(PARTIAL));
-    let unwritable: RefCell<Option<ReportError>> = RefCell::new(None);
-    let fault = Mutex::new(None);
-    let has_failed = || fault.lock().is_ok_and(|error| error.is_some());
-    let mut progress = |history: &History| {
-        if !quiet {
-            show(history);
-        }
-        if let Err(error) = log.append(history) {
-            unwritable.borrow_mut().get_or_insert(error);
-        }
-        if stopped() || has_failed() || unwritable.borrow().is_some() {
-            ControlFlow::Break(())
-        } else {
-            ControlFlow::Continue(())
-        }
-    };
-    let known = opened.known_evaluations(&fault, quiet);
-    let state = state.map(|warm| &warm.state);
-    let done = driver::optimise(problem, file, state, known, &mut progress);
-    let lost = unwritable
-        .into_inner()
-        .or(fault.into_inner().ok().flatten());
-    match done {
-        Some(done) => Ok((done, lost)),
-        None => Err(Failure::bad_input("nothing to optimise")),
-    }
 }

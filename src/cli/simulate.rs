@@ -3,6 +3,7 @@
 use super::aggregates::{add_smoothed, told};
 use super::arguments::Job;
 use super::error_table::{self, table};
+use super::optimise::start_from;
 use super::{DONE, Failure, NOT_REACHED, REPORT, draw, load, print, read, refine, shown, tell};
 use crate::driver::ends::Ends;
 use crate::driver::page::page;
@@ -18,10 +19,19 @@ use crate::problem::Problem;
 use crate::report::{prepare_directory, write_all};
 use serde_json::{Map, Value, json};
 use std::fmt::Write;
+use std::path::Path;
 
 /// Simulates the start of a problem.
-pub(crate) fn simulate(job: &Job, json: bool, joint_axes: bool) -> Result<u8, Failure> {
-    let problem = read(job)?;
+pub(crate) fn simulate(
+    job: &Job,
+    from: Option<&Path>,
+    json: bool,
+    joint_axes: bool,
+) -> Result<u8, Failure> {
+    let mut problem = read(job)?;
+    if let Some(from) = from {
+        start_from(&mut problem, from)?;
+    }
     // The directory is locked and known to be writable before the simulation.
     let _held = match &job.output {
         Some(directory) => Some(prepare_directory(directory)?),
@@ -321,12 +331,15 @@ fn warned(problem: &Problem, at: &Evaluated) -> String {
 }
 
 /// Checks all gradients of a problem at its start.
-pub(crate) fn check(job: &Job, tolerance: f64) -> Result<u8, Failure> {
+pub(crate) fn check(job: &Job, from: Option<&Path>, tolerance: f64) -> Result<u8, Failure> {
     if job.output.is_some() {
         let what = "found --output, expected none: optimize check writes no files";
         return Err(Failure::bad_input(what));
     }
     let mut problem = load(job)?;
+    if let Some(from) = from {
+        start_from(&mut problem, from)?;
+    }
     if let Some(focused) = problem.focused(&all(&problem)) {
         problem = focused;
     }

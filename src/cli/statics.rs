@@ -154,7 +154,9 @@ fn summary(problem: &Problem, design: &StaticDesign) -> String {
     for (f, name) in problem.function_names.iter().enumerate() {
         let found = design.function(f);
         let unit = problem.function_unit(f);
-        let _ = write!(text, "  {name:width$}  {:>16.9e} {unit}", found.value);
+        let unit = if unit == "1" { "" } else { &unit };
+        let line = format!("  {name:width$}  {:>16.9e} {unit}", found.value);
+        text.push_str(line.trim_end());
         if let Some(peak) = found.peak {
             let place = place(&design.statics.cases, &peak);
             let _ = write!(text, "  true maximum {:.9e} at {place}", peak.ratio);

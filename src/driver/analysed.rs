@@ -252,13 +252,16 @@ impl Simulated {
         let one = |&f: &usize| {
             let Smoothed { value, far } = self.smoothed(f)?;
             let name = &problem.function_names[f];
-            let unit = problem.function_unit(f);
+            let unit = match problem.function_unit(f) {
+                unit if unit == "1" => String::new(),
+                unit => format!(" {unit}"),
+            };
             let far = far?;
             Some(Message {
                 name: name.clone(),
                 size: far.part,
                 text: format!(
-                    "the true value of \"{name}\" {when} is {value:.6e} {unit}, and {far}"
+                    "the true value of \"{name}\" {when} is {value:.6e}{unit}, and {far}"
                 ),
             })
         };

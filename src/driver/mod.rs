@@ -31,6 +31,7 @@ mod record;
 pub(crate) mod recorded;
 pub(crate) mod resolved;
 pub(crate) mod second_order;
+mod shapes;
 pub(crate) mod shell_fields;
 mod shells;
 pub(crate) mod simulate;

@@ -1,10 +1,10 @@
 //! The page of a result: what moves, and the curves of its functions.
 
 use super::connectors::{Joined, joined};
-use super::elastic_figures::{colours, deflections, displaced, elastic, has_stress, stresses};
+use super::elastic_figures::{colours, deflections, stresses};
 use super::ends::Ends;
 use super::optimise::asked;
-use super::shells;
+use super::shapes::{Detail, shape};
 use super::simulate::Simulation;
 use super::statics::stages as of_structures;
 use super::traces;
@@ -13,15 +13,19 @@ use crate::functions::evaluate::sample;
 use crate::functions::snapshot::Snapshot;
 use crate::functions::turning::turns;
 use crate::math::Vec3;
-use crate::problem::{Drawing, Outline, Problem, larger};
-use crate::report::page::{Body, Chart, Curve, Link, Shape, Stage, convergence, rounded};
+use crate::problem::{Drawing, Problem};
+use crate::report::page::{Body, Chart, Curve, Link, Stage, convergence, rounded};
 use crate::report::plots::{ConnectorKind, History as Curves};
 use crate::report::{History, Optimum, page};
 
 /// Most frames of a motion.
 const MOST_FRAMES: usize = 240;
-/// Most coordinates in all frames of the bodies of a design that deform: about 1 MB.
+/// Most numbers in all frames of a design, unless twelve frames have more: about 1 MB.
 const MOST_NUMBERS: usize = 120_000;
+/// Fewest frames of a long motion.
+const LEAST_FRAMES: usize = 12;
+/// Numbers of a joint or load at an instant.
+const OF_LINK: usize = 6;
 
 /// The page of designs, and of the optimisation that led to the last.
 ///
@@ -48,6 +52,26 @@ pub(crate) fn page(
         charts,
         optimum: of_run.map(|(optimum, _)| optimum),
         notes,
+        goes_on: false,
+        version: env!("CARGO_PKG_VERSION"),
+    })
+}
+
+/// The page of an optimisation that goes on: its convergence so far.
+///
+/// # Errors
+/// Not for finite numbers.
+pub(crate) fn so_far(problem: &Problem, history: &History) -> Result<String, serde_json::Error> {
+    let iteration = history.rows.last().map_or(0, |row| row.iteration);
+    page::html(&page::Page {
+        name: &problem.name,
+        description: problem.document["description"].as_str().unwrap_or(""),
+        summary: format!("iteration {iteration}; the optimisation goes on"),
+        stages: Vec::new(),
+        charts: convergence(history),
+        optimum: None,
+        notes: Vec::new(),
+        goes_on: true,
         version: env!("CARGO_PKG_VERSION"),
     })
 }
@@ -165,19 +189,24 @@ fn stage(
     let drawing = problem.drawing(&simulation.at.x);
     let (model, run) = (&simulation.written.model, simulation.motion());
     let bodies = || (0..model.bodies.len()).filter(|body| !model.is_internal(*body));
-    let points: usize = bodies()
-        .map(|body| points_of(&drawing.outlines[body]))
-        .sum();
-    let frames = frames(run.shown(), (3 * points).max(1));
+    let outlines = || bodies().map(|body| &drawing.outlines[body]);
+    let links = OF_LINK * (model.joints.len() + model.loads.len());
+    let detail = Detail::of(outlines(), MOST_NUMBERS / LEAST_FRAMES);
+    let frames = frames(run.shown(), detail.numbers(outlines()) + links);
+    let of = if title.is_empty() { "motion" } else { title };
     if frames.len() < run.shown().len().min(MOST_FRAMES) {
         let (some, all) = (frames.len(), run.shown().len());
-        let of = if title.is_empty() { "motion" } else { title };
         notes.push(format!("Of the {of}, {some} of {all} instants are shown."));
+    }
+    if detail.is_thinned() {
+        notes.push(format!(
+            "Of the {of}, beams are shown at fewer sections and shells by their corners: all would be too many numbers."
+        ));
     }
     let all: Vec<Body> = bodies()
         .map(|body| Body {
             name: model.bodies[body].name.clone(),
-            shape: shape((simulation, &drawing), body, &frames),
+            shape: shape((simulation, &drawing), body, &frames, &detail),
         })
         .collect();
     let list = |v: &Vec3<f64>| -> [f64; 3] { [v.x, v.y, v.z].map(rounded) };
@@ -222,156 +251,12 @@ fn stage(
     }
 }
 
-/// Instants that are shown, fewer of bodies that take many numbers each.
+/// Instants that are shown, fewer where each takes many numbers.
 fn frames(shown: Vec<usize>, numbers: usize) -> Vec<usize> {
-    let most = (MOST_NUMBERS / numbers).clamp(12, MOST_FRAMES);
+    let most = (MOST_NUMBERS / numbers.max(1)).clamp(LEAST_FRAMES, MOST_FRAMES);
     if shown.len() <= most {
         return shown;
     }
     let last = shown.len() - 1;
     (0..most).map(|i| shown[i * last / (most - 1)]).collect()
-}
-
-/// Number of points of a body that deforms.
-fn points_of(outline: &Outline) -> usize {
-    match outline {
-        Outline::Deformed(line) => line.points.len(),
-        Outline::Shells(line) => line.mesh.nodes.len(),
-        Outline::Hull(_) | Outline::Sphere(_) | Outline::Spokes(_) => 0,
-    }
-}
-
-fn shape((simulation, drawing): (&Simulation, &Drawing), body: usize, frames: &[usize]) -> Shape {
-    let (model, run) = (&simulation.written.model, simulation.motion());
-    let at = |k: &usize| Snapshot::of(model, run, *k);
-    let poses = || {
-        let pose = |k: &usize| {
-            let motion = at(k).motion(body);
-            let (origin, turned) = (motion.position, motion.rotation);
-            let mut all = [0.0; 9];
-            for i in 0..3 {
-                all[i] = origin[i];
-                all[3 + i] = turned[(i, 0)];
-                all[6 + i] = turned[(i, 1)];
-            }
-            all.map(rounded)
-        };
-        frames.iter().map(pose).collect()
-    };
-    let list = |points: &[Vec3<f64>]| -> Vec<[f64; 3]> {
-        points
-            .iter()
-            .map(|p| [p.x, p.y, p.z].map(rounded))
-            .collect()
-    };
-    match &drawing.outlines[body] {
-        Outline::Hull(points) => Shape::Hull {
-            points: list(points),
-            poses: poses(),
-        },
-        Outline::Sphere(radius) => Shape::Sphere {
-            radius: *radius,
-            poses: poses(),
-        },
-        Outline::Spokes(points) => Shape::Spokes {
-            points: list(points),
-            poses: poses(),
-        },
-        Outline::Deformed(line) => {
-            let fibres = match &drawing.fibres[body][..] {
-                [beam] if beam.are_known() => Some(beam),
-                _ => None,
-            };
-            let last = line.points.len() - 1;
-            let slices = line.points.len() / 2 - 1;
-            let slice = |k: usize| vec![k, k + 1, last - k - 1, last - k];
-            let places = |k: &usize| {
-                let (at, q) = (at(k), elastic(model, &at(k), body));
-                let motion = at.motion(body);
-                let points = line.points.iter();
-                let moved = points.map(|(point, modes)| motion.point(&displaced(point, modes, &q)));
-                moved.flat_map(|p| [p.x, p.y, p.z].map(rounded)).collect()
-            };
-            let values = |k: &usize| match fibres {
-                Some(beam) => {
-                    let largest = beam.largest(&elastic(model, &at(k), body));
-                    let ends = largest.windows(2);
-                    ends.map(|ends| rounded(larger(ends[0], ends[1]))).collect()
-                }
-                None => Vec::new(),
-            };
-            Shape::Mesh {
-                faces: (0..slices).map(slice).collect(),
-                places: frames.iter().map(places).collect(),
-                values: frames.iter().map(values).collect(),
-            }
-        }
-        Outline::Shells(line) => of_shells((simulation, drawing), body, &line.mesh, frames),
-    }
-}
-
-/// Shells by four faces each, beams by their halves.
-fn of_shells(
-    (simulation, drawing): (&Simulation, &Drawing),
-    body: usize,
-    mesh: &crate::model::finite::ElementMesh,
-    frames: &[usize],
-) -> Shape {
-    let (model, run) = (&simulation.written.model, simulation.motion());
-    let mut faces = Vec::new();
-    for element in &mesh.elements {
-        for at in [0, 1, 3, 4] {
-            faces.push(
-                [at, at + 1, at + 4, at + 3]
-                    .map(|local| element.nodes[local])
-                    .to_vec(),
-            );
-        }
-    }
-    for ends in &mesh.beams {
-        faces.extend(ends.windows(2).map(|half| half.to_vec()));
-    }
-    let unknowns = |k: &usize| {
-        let at = Snapshot::of(model, run, *k);
-        (
-            at.motion(body),
-            shells::unknowns(model, body, elastic(model, &at, body)),
-        )
-    };
-    let places = |k: &usize| {
-        let (motion, q) = unknowns(k);
-        let nodes = shells::places(mesh, &q);
-        let moved = nodes.iter().map(|p| motion.point(p));
-        moved.flat_map(|p| [p.x, p.y, p.z].map(rounded)).collect()
-    };
-    let known = has_stress(model, body, drawing);
-    let values = |k: &usize| {
-        let (_, q) = unknowns(k);
-        let Some(finite) = shells::of(model, body).filter(|_| known) else {
-            return Vec::new();
-        };
-        let mut all = Vec::new();
-        for stress in shells::stresses(finite, &q) {
-            for at in [0, 1, 3, 4] {
-                let corners = [at, at + 1, at + 4, at + 3];
-                all.push(rounded(
-                    corners.iter().map(|&g| stress[g]).sum::<f64>() / 4.0,
-                ));
-            }
-        }
-        for beam in &drawing.fibres[body] {
-            let largest = beam.largest(&q);
-            all.extend(
-                largest
-                    .windows(2)
-                    .map(|ends| rounded(larger(ends[0], ends[1]))),
-            );
-        }
-        all
-    };
-    Shape::Mesh {
-        faces,
-        places: frames.iter().map(places).collect(),
-        values: frames.iter().map(values).collect(),
-    }
 }

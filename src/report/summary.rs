@@ -290,11 +290,14 @@ fn maxima(optimum: &Optimum) -> String {
 
 /// The value of one unit of the bound.
 fn sensitivity(optimum: &Optimum, constraint: &super::optimum::ConstraintValue) -> String {
+    let per = match constraint.unit.as_deref() {
+        Some("" | "1") => String::new(),
+        unit => format!(" per {}", unit.unwrap_or("unit")),
+    };
     format!(
-        "{}{} per {}",
+        "{}{}{per}",
         significant(constraint.multiplier, 5),
         with_space(optimum.objective.unit.as_deref()),
-        constraint.unit.as_deref().unwrap_or("unit"),
     )
 }
 
@@ -388,5 +391,6 @@ fn interval(lower: Option<f64>, upper: Option<f64>) -> String {
 }
 
 fn with_space(unit: Option<&str>) -> String {
+    let unit = unit.filter(|unit| !["", "1"].contains(unit));
     unit.map(|unit| format!(" {unit}")).unwrap_or_default()
 }

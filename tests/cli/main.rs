@@ -3,6 +3,7 @@
 mod before_work;
 mod beyond_one_run;
 mod commands;
+mod gallery;
 mod installation;
 mod memory;
 mod names;

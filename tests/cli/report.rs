@@ -1,9 +1,10 @@
 //! `--report` and `optimize report`: one page that needs nothing else, in a browser where there is one.
 
-use crate::program::{HAMMER, changed, expect, read, scratch};
+use crate::program::{HAMMER, TREBUCHET, changed, expect, read, scratch, start};
 use serde_json::Value;
 use std::path::Path;
 use std::process::Command;
+use std::time::{Duration, Instant};
 
 const PLATE: &str = concat!(env!("CARGO_MANIFEST_DIR"), "/problems/plate_patches.json");
 const FLEXIBLE: &str = concat!(
@@ -133,6 +134,40 @@ fn structures_and_bodies_that_deform_are_meshes() {
             }
         }
     }
+}
+
+/// While a run goes on its page is read again by itself and shows the convergence; at the end it is the report.
+#[test]
+fn a_run_can_be_watched() {
+    let at = scratch();
+    let page = at.path().join("out/report.html");
+    let arguments = [
+        TREBUCHET,
+        "--output",
+        "out",
+        "--watch",
+        "--set",
+        "/simulation/tolerance=1e-13",
+    ];
+    let mut run = start(at.path(), &arguments);
+    let begun = Instant::now();
+    let text = loop {
+        if let Ok(text) = std::fs::read_to_string(&page) {
+            break text;
+        }
+        assert!(begun.elapsed() < Duration::from_secs(60), "no page");
+        std::thread::sleep(Duration::from_millis(2));
+    };
+    assert!(text.contains("http-equiv=\"refresh\""));
+    stands_alone(&text);
+    let shown = data(&text);
+    assert!(shown.get("optimum").is_none());
+    assert_eq!(shown["charts"][0]["title"], "Objective");
+    assert!(run.wait().expect("an end").success());
+    let text = read(&page);
+    assert!(!text.contains("http-equiv"));
+    assert_eq!(data(&text)["optimum"]["status"], "converged");
+    expect(2, at.path(), &[HAMMER, "--watch", "--starts", "2"]);
 }
 
 /// A program that shows pages, if there is one.

@@ -4,6 +4,8 @@
 mod gradients;
 #[path = "../../examples/optimiser.rs"]
 mod optimiser;
+#[path = "../../examples/own_objective.rs"]
+mod own_objective;
 #[path = "../../examples/rosenbrock.rs"]
 mod rosenbrock;
 #[path = "../../examples/simulate.rs"]
@@ -19,6 +21,7 @@ fn the_examples_run() {
     gradients::main().expect("runs");
     optimiser::main();
     rosenbrock::main();
+    own_objective::main().expect("runs");
 }
 
 fn trebuchet() -> Problem {

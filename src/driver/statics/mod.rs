@@ -381,7 +381,9 @@ impl StaticDesign {
         let mut workspace = self.shared();
         let (statics, structure) = (&self.statics, &self.scene.structure);
         let by_structure = match &statics.functions[f] {
-            Asked::DistanceFromStart | Asked::OfSolutions(_) => structure.zeros(),
+            Asked::DistanceFromStart | Asked::OfSolutions(_) => {
+                unreachable!("they are no functions of modes")
+            }
             Asked::LowestFrequency(_) => {
                 let found = self.lowest[f].as_ref().expect("it was found before");
                 found.gradient.clone()

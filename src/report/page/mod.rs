@@ -35,6 +35,9 @@ pub(crate) struct Page<'a> {
     pub optimum: Option<&'a Optimum>,
     /// What the page leaves out.
     pub notes: Vec<String>,
+    /// Whether the run goes on, so that the browser reads the file again every two seconds.
+    #[serde(skip)]
+    pub goes_on: bool,
     /// The version of the program.
     pub version: &'static str,
 }
@@ -195,8 +198,13 @@ pub(crate) fn html(page: &Page) -> Result<String, serde_json::Error> {
     // No text of a problem may end the element that it stands in.
     let data = serde_json::to_string(page)?.replace('<', "\\u003c");
     let title = page.name.replace('&', "&amp;").replace('<', "&lt;");
+    let refresh = match page.goes_on {
+        true => "\n<meta http-equiv=\"refresh\" content=\"2\">",
+        false => "",
+    };
     let parts = [
         ("{{title}}", title),
+        ("{{refresh}}", refresh.to_owned()),
         ("{{style}}", STYLE.to_owned()),
         ("{{programs}}", PROGRAMS.concat()),
         ("{{data}}", data),

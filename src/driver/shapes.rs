@@ -1,0 +1,220 @@
+//! Shapes of bodies on a page: rigid ones by their poses, those that deform as meshes.
+
+use super::elastic_figures::{displaced, elastic, has_stress};
+use super::shells;
+use super::simulate::Simulation;
+use crate::functions::snapshot::Snapshot;
+use crate::math::Vec3;
+use crate::model::finite::ElementMesh;
+use crate::problem::{Drawing, Outline, larger};
+use crate::report::page::{Shape, rounded};
+use std::collections::BTreeMap;
+
+/// Numbers of a rigid body at an instant.
+const OF_BODY: usize = 9;
+
+/// How much of bodies that deform is shown.
+pub(super) struct Detail {
+    /// Part of the sections of beams; of shells all nodes if it is one, else their corners.
+    share: f64,
+}
+
+impl Detail {
+    /// All, or what keeps the numbers of an instant near `most`.
+    pub(super) fn of<'a>(outlines: impl Iterator<Item = &'a Outline>, most: usize) -> Self {
+        let numbers = Self { share: 1.0 }.numbers(outlines);
+        Self {
+            share: (most as f64 / numbers.max(1) as f64).min(1.0),
+        }
+    }
+
+    /// Whether something is left out.
+    pub(super) fn is_thinned(&self) -> bool {
+        self.share < 1.0
+    }
+
+    /// Numbers of all bodies at an instant.
+    pub(super) fn numbers<'a>(&self, outlines: impl Iterator<Item = &'a Outline>) -> usize {
+        let of = |outline: &Outline| match outline {
+            Outline::Deformed(line) => 6 * self.sections(line.points.len() / 2).len(),
+            Outline::Shells(line) => 3 * self.nodes(&line.mesh).len(),
+            Outline::Hull(_) | Outline::Sphere(_) | Outline::Spokes(_) => OF_BODY,
+        };
+        outlines.map(of).sum()
+    }
+
+    /// The sections of `count` that are shown, both ends among them.
+    fn sections(&self, count: usize) -> Vec<usize> {
+        let some = ((count as f64 * self.share).round() as usize).clamp(2.min(count), count);
+        let last = count.saturating_sub(1);
+        let gaps = some.saturating_sub(1).max(1);
+        (0..some).map(|i| i * last / gaps).collect()
+    }
+
+    /// The faces of shells by their nodes: four of each, or one.
+    fn faces(&self, mesh: &ElementMesh) -> Vec<Vec<usize>> {
+        let corners: Vec<[usize; 4]> = match self.is_thinned() {
+            true => vec![[0, 2, 8, 6]],
+            false => [0, 1, 3, 4].map(|at| [at, at + 1, at + 4, at + 3]).to_vec(),
+        };
+        let of_element = |nodes: &[usize; 9]| -> Vec<Vec<usize>> {
+            let each = corners.iter();
+            each.map(|own| own.map(|local| nodes[local]).to_vec())
+                .collect()
+        };
+        let mut all: Vec<Vec<usize>> = mesh
+            .elements
+            .iter()
+            .flat_map(|element| of_element(&element.nodes))
+            .collect();
+        for ends in &mesh.beams {
+            all.extend(ends.windows(2).map(|half| half.to_vec()));
+        }
+        all
+    }
+
+    /// The nodes that the faces have, in order.
+    fn nodes(&self, mesh: &ElementMesh) -> Vec<usize> {
+        let mut all: Vec<usize> = self.faces(mesh).into_iter().flatten().collect();
+        all.sort_unstable();
+        all.dedup();
+        all
+    }
+}
+
+/// The shape of a body in the frames.
+pub(super) fn shape(
+    (simulation, drawing): (&Simulation, &Drawing),
+    body: usize,
+    frames: &[usize],
+    detail: &Detail,
+) -> Shape {
+    let (model, run) = (&simulation.written.model, simulation.motion());
+    let at = |k: &usize| Snapshot::of(model, run, *k);
+    let poses = || {
+        let pose = |k: &usize| {
+            let motion = at(k).motion(body);
+            let (origin, turned) = (motion.position, motion.rotation);
+            let mut all = [0.0; OF_BODY];
+            for i in 0..3 {
+                all[i] = origin[i];
+                all[3 + i] = turned[(i, 0)];
+                all[6 + i] = turned[(i, 1)];
+            }
+            all.map(rounded)
+        };
+        frames.iter().map(pose).collect()
+    };
+    let list = |points: &[Vec3<f64>]| -> Vec<[f64; 3]> {
+        let points = points.iter();
+        points.map(|p| [p.x, p.y, p.z].map(rounded)).collect()
+    };
+    match &drawing.outlines[body] {
+        Outline::Hull(points) => Shape::Hull {
+            points: list(points),
+            poses: poses(),
+        },
+        Outline::Sphere(radius) => Shape::Sphere {
+            radius: *radius,
+            poses: poses(),
+        },
+        Outline::Spokes(points) => Shape::Spokes {
+            points: list(points),
+            poses: poses(),
+        },
+        Outline::Deformed(line) => {
+            let fibres = match &drawing.fibres[body][..] {
+                [beam] if beam.are_known() => Some(beam),
+                _ => None,
+            };
+            let sections = detail.sections(line.points.len() / 2);
+            // One side, then the other in opposite order.
+            let (count, other) = (sections.len(), line.points.len() - 1);
+            let sides = sections.iter().copied();
+            let sides = sides.chain(sections.iter().rev().map(|&k| other - k));
+            let points: Vec<_> = sides.map(|k| &line.points[k]).collect();
+            let last = 2 * count - 1;
+            let slice = |k: usize| vec![k, k + 1, last - k - 1, last - k];
+            let places = |k: &usize| {
+                let (at, q) = (at(k), elastic(model, &at(k), body));
+                let motion = at.motion(body);
+                let moved = points.iter();
+                let moved = moved.map(|(point, modes)| motion.point(&displaced(point, modes, &q)));
+                moved.flat_map(|p| [p.x, p.y, p.z].map(rounded)).collect()
+            };
+            let values = |k: &usize| match fibres {
+                Some(beam) => {
+                    let largest = beam.largest(&elastic(model, &at(k), body));
+                    let between = |ends: &[usize]| {
+                        let own = largest[ends[0]..=ends[1]].iter().copied();
+                        rounded(own.reduce(larger).unwrap_or(0.0))
+                    };
+                    sections.windows(2).map(between).collect()
+                }
+                None => Vec::new(),
+            };
+            Shape::Mesh {
+                faces: (0..count.saturating_sub(1)).map(slice).collect(),
+                places: frames.iter().map(places).collect(),
+                values: frames.iter().map(values).collect(),
+            }
+        }
+        Outline::Shells(line) => {
+            of_shells((simulation, drawing), body, &line.mesh, (frames, detail))
+        }
+    }
+}
+
+/// Shells, and beams by their halves.
+fn of_shells(
+    (simulation, drawing): (&Simulation, &Drawing),
+    body: usize,
+    mesh: &ElementMesh,
+    (frames, detail): (&[usize], &Detail),
+) -> Shape {
+    let (model, run) = (&simulation.written.model, simulation.motion());
+    let nodes = detail.nodes(mesh);
+    let number: BTreeMap<usize, usize> = nodes.iter().enumerate().map(|(k, &n)| (n, k)).collect();
+    let faces = detail.faces(mesh).into_iter();
+    let numbered = |face: Vec<usize>| face.iter().map(|node| number[node]).collect();
+    let unknowns = |k: &usize| {
+        let at = Snapshot::of(model, run, *k);
+        let q = shells::unknowns(model, body, elastic(model, &at, body));
+        (at.motion(body), q)
+    };
+    let places = |k: &usize| {
+        let (motion, q) = unknowns(k);
+        let all = shells::places(mesh, &q);
+        let moved = nodes.iter().map(|&node| motion.point(&all[node]));
+        moved.flat_map(|p| [p.x, p.y, p.z].map(rounded)).collect()
+    };
+    let known = has_stress(model, body, drawing);
+    let mean = |values: &[f64]| rounded(values.iter().sum::<f64>() / values.len() as f64);
+    let values = |k: &usize| {
+        let (_, q) = unknowns(k);
+        let Some(finite) = shells::of(model, body).filter(|_| known) else {
+            return Vec::new();
+        };
+        let mut all = Vec::new();
+        for stress in shells::stresses(finite, &q) {
+            if detail.is_thinned() {
+                all.push(mean(&stress));
+                continue;
+            }
+            for at in [0, 1, 3, 4] {
+                all.push(mean(&[at, at + 1, at + 4, at + 3].map(|g| stress[g])));
+            }
+        }
+        for beam in &drawing.fibres[body] {
+            let largest = beam.largest(&q);
+            let halves = largest.windows(2);
+            all.extend(halves.map(|ends| rounded(larger(ends[0], ends[1]))));
+        }
+        all
+    };
+    Shape::Mesh {
+        faces: faces.map(numbered).collect(),
+        places: frames.iter().map(places).collect(),
+        values: frames.iter().map(values).collect(),
+    }
+}
