@@ -34,7 +34,7 @@ pub struct Gradient {
 
 /// By which numbers of a structure a function is derived.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum By {
+pub(crate) enum By {
     /// All of them.
     Everything,
     /// The thickness of the shells. The others may be left out, which makes many functions cheap: the derivatives of

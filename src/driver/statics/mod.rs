@@ -1,6 +1,7 @@
 //! Structures under load cases at a design: solutions, modes, functions, exact gradients.
 
 pub(crate) mod check;
+mod derivatives;
 pub(crate) mod error;
 pub(crate) mod fields;
 pub(crate) mod figures;
@@ -10,23 +11,18 @@ mod limits;
 pub(crate) mod precision;
 pub(crate) mod stages;
 
-use super::evaluate::Derivative;
 use crate::integrate::WorkCounts;
 use crate::math::soft_max::{Smoothed, smoothed};
 use crate::problem::{Asked, Problem, StaticScene, Statics, Workspace};
 use crate::structures::functions::{Function, Peak, Solved};
-use crate::structures::gradient::{By, Gradient, Solutions, gradients};
-use crate::structures::loads::Load;
 use crate::structures::modes::{
-    LowestFrequency, ModalFailure, ModalProblem, Modes, frequency_gradient, lowest_frequency,
-    lowest_of,
+    LowestFrequency, ModalFailure, ModalProblem, Modes, lowest_frequency, lowest_of,
 };
 use crate::structures::properties::PropertyFault;
 use crate::structures::quality::{MeshFault, faults};
 use crate::structures::statics::{StaticFailure, StaticProblem};
 use crate::structures::structure::Structure;
 use crate::structures::von_karman::LoadSteps;
-use std::collections::BTreeMap;
 use std::sync::{Arc, Mutex, MutexGuard, PoisonError};
 
 /// Why structures have no solution or no gradient at a design.
@@ -375,117 +371,4 @@ impl StaticDesign {
             Asked::OfSolutions(_) | Asked::Frequency(_) | Asked::DistanceFromStart => None,
         }
     }
-
-    /// The derivatives of a function of modes by structure and loads.
-    fn by_structure(&self, f: usize) -> Result<Gradient, StaticsFailure> {
-        let mut workspace = self.shared();
-        let (statics, structure) = (&self.statics, &self.scene.structure);
-        let by_structure = match &statics.functions[f] {
-            Asked::DistanceFromStart | Asked::OfSolutions(_) => {
-                unreachable!("they are no functions of modes")
-            }
-            Asked::LowestFrequency(_) => {
-                let found = self.lowest[f].as_ref().expect("it was found before");
-                found.gradient.clone()
-            }
-            Asked::Frequency(mode) => {
-                let found = self.modes.as_ref().expect("modes were found before");
-                let modal = of_modes(&mut workspace, statics, structure)?;
-                frequency_gradient(modal, structure, found, *mode)?
-            }
-        };
-        Ok(Gradient {
-            structure: by_structure,
-            cases: self.scene.cases.iter().map(|case| zeros(case)).collect(),
-        })
-    }
-
-    /// The derivatives of functions of solutions by structure and loads, in order.
-    fn by_solutions(
-        &self,
-        functions: &[&Function],
-        by: By,
-        counts: &mut WorkCounts,
-    ) -> Result<Vec<Gradient>, StaticsFailure> {
-        if functions.is_empty() {
-            return Ok(Vec::new());
-        }
-        let mut workspace = self.shared();
-        let matrices = of_cases(&mut workspace, &self.statics, &self.scene.structure)?;
-        let at = Solutions {
-            structure: &self.scene.structure,
-            cases: &self.scene.cases,
-            solutions: &self.solutions,
-            terms: self.statics.terms,
-        };
-        let found = gradients(matrices, &at, functions, by).map_err(ModalFailure::from)?;
-        counts.solves += found.work.solves;
-        counts.factorisations += found.work.factorisations;
-        Ok(found.gradients)
-    }
-
-    /// Exact derivatives of the functions `which` in the design variables, and the work they took.
-    ///
-    /// # Errors
-    /// [`StaticsFailure`] if a function has no derivative there.
-    pub(crate) fn derivatives(
-        &self,
-        problem: &Problem,
-        which: &[usize],
-    ) -> Result<(Vec<Vec<Derivative>>, WorkCounts), StaticsFailure> {
-        let moved = problem.moved(&self.statics, &self.x);
-        let by = match moved.is_empty() && self.scene.structure.sections.is_empty() {
-            true => By::Thickness,
-            false => By::Everything,
-        };
-        let mut counts = WorkCounts::default();
-        let mut distinct = which.to_vec();
-        distinct.sort_unstable();
-        distinct.dedup();
-        let of_solutions = distinct
-            .iter()
-            .filter_map(|&f| match &self.statics.functions[f] {
-                Asked::OfSolutions(function) => Some(function),
-                _ => None,
-            });
-        let of_solutions: Vec<&Function> = of_solutions.collect();
-        let mut of_solutions = self
-            .by_solutions(&of_solutions, by, &mut counts)?
-            .into_iter();
-        let mut all: BTreeMap<usize, Vec<Derivative>> = BTreeMap::new();
-        for f in distinct {
-            let by = match &self.statics.functions[f] {
-                Asked::DistanceFromStart => {
-                    all.insert(f, distance_derivatives(problem, &self.x));
-                    continue;
-                }
-                Asked::OfSolutions(_) => of_solutions.next().expect("one for each function"),
-                Asked::Frequency(_) | Asked::LowestFrequency(_) => self.by_structure(f)?,
-            };
-            let found = problem.pull_back(&self.statics, &moved, (&by.structure, &by.cases));
-            let pairs = found.values.into_iter().zip(found.terms);
-            let pairs = pairs.map(|(value, terms)| Derivative { value, terms });
-            all.insert(f, pairs.collect());
-        }
-        let found = which.iter().map(|f| all[f].clone());
-        Ok((found.collect(), counts))
-    }
-}
-
-fn zeros(case: &[Load<f64>]) -> Vec<Load<f64>> {
-    case.iter().map(|load| load.map(|_| 0.0)).collect()
-}
-
-/// Derivatives of Σ ((x − x0)/scale)².
-fn distance_derivatives(problem: &Problem, x: &[f64]) -> Vec<Derivative> {
-    let one = |i: usize| {
-        let seeded = x.iter().enumerate();
-        let seeded = seeded.map(|(j, &x)| crate::math::Dual::new(x, f64::from(u8::from(i == j))));
-        let value = problem.distance_from_start(&seeded.collect::<Vec<_>>()).du;
-        Derivative {
-            value,
-            terms: value.abs(),
-        }
-    };
-    (0..x.len()).map(one).collect()
 }
