@@ -1,7 +1,7 @@
 //! `optimize compare`, `optimize plot`, `optimize report` and `optimize schema`.
 
 use super::arguments::Comparison;
-use super::optimise::STATE;
+use super::earlier::STATE;
 use super::{DONE, Failure, NOT_REACHED, REPORT, print, record};
 use crate::driver::page::page;
 use crate::driver::recorded::Recorded;

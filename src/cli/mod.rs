@@ -3,6 +3,7 @@
 mod aggregates;
 mod arguments;
 mod compare;
+mod earlier;
 mod error_table;
 mod explain;
 mod installation;

@@ -1,6 +1,5 @@
 //! `optimize PROBLEM` from one start: progress, history and page while it runs.
 
-use super::optimise::PARTIAL;
 use super::progress::show;
 use super::records::{Records, Start, changed};
 use super::{Failure, REPORT, tell};
@@ -14,6 +13,8 @@ use std::path::Path;
 use std::sync::Mutex;
 use std::time::{Duration, Instant};
 
+/// The history during the run. The other results are still those of an earlier run.
+pub(super) const PARTIAL: &str = "history.partial.csv";
 /// Shortest time between two pages of a run that goes on.
 const SHORTEST_WATCH: Duration = Duration::from_secs(1);
 

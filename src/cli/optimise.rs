@@ -1,13 +1,14 @@
 //! `optimize PROBLEM`: the default job.
 
 use super::arguments::{Job, RunOptions};
-use super::one_start::one;
+use super::earlier::{STATE, start_from};
+use super::one_start::{PARTIAL, one};
 use super::parameters::{Parameter, add_sensitivities, parameter, sweep};
 use super::records::{Records, Start, refuse_without_run};
 use super::starts::{several, spread};
 use super::{
     DONE, Failure, INTERRUPTED, NOT_REACHED, NUMERICAL_FAILURE, REPORT, draw, interrupt, print,
-    read, record, refine, shown, tell,
+    read, refine, shown, tell,
 };
 use crate::driver::ends::Ends;
 use crate::driver::page::page;
@@ -24,10 +25,6 @@ use std::time::Instant;
 
 /// The record of the optimum.
 const OPTIMUM: &str = "optimum.json";
-/// The history during the run. The other results are still those of an earlier run.
-pub(super) const PARTIAL: &str = "history.partial.csv";
-/// The state of the optimiser, for a warm start.
-pub(super) const STATE: &str = "state.json";
 /// The distinct optima of several starts.
 const OPTIMA: &str = "optima.csv";
 
@@ -319,40 +316,4 @@ fn complete(problem: &Problem, job: &Job) -> Result<(), Failure> {
         return lacking("\"variables\"", "use optimize simulate");
     }
     Ok(())
-}
-
-/// Moves the start to the design of another optimum. Returns its state, if there is one of the same
-/// design and problem.
-pub(super) fn start_from(problem: &mut Problem, from: &Path) -> Result<Option<WarmStart>, Failure> {
-    let (record, optimum) = record(from)?;
-    let mut start = problem.start();
-    let mut known = 0;
-    for (x, variable) in start.iter_mut().zip(&problem.variables) {
-        if let Some(design) = optimum.design.get(&variable.name) {
-            *x = design.value;
-            known += 1;
-        }
-    }
-    if known == 0 {
-        return Err(Failure::bad_input(format!(
-            "{}: found the variables {}, expected at least one of {}",
-            shown(&record),
-            optimum
-                .design
-                .keys()
-                .cloned()
-                .collect::<Vec<_>>()
-                .join(", "),
-            problem
-                .variables
-                .iter()
-                .map(|v| v.name.as_str())
-                .collect::<Vec<_>>()
-                .join(", ")
-        )));
-    }
-    problem.restart(&start);
-    let state = std::fs::read(record.with_file_name(STATE)).ok();
-    let state = state.and_then(|text| serde_json::from_slice::<WarmStart>(&text).ok());
-    Ok(state.filter(|state| state.fits(problem) && state.is_at(&start)))
 }

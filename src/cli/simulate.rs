@@ -2,8 +2,8 @@
 
 use super::aggregates::{add_smoothed, told};
 use super::arguments::Job;
+use super::earlier::start_from;
 use super::error_table::{self, table};
-use super::optimise::start_from;
 use super::{DONE, Failure, NOT_REACHED, REPORT, draw, load, print, read, refine, shown, tell};
 use crate::driver::ends::Ends;
 use crate::driver::page::page;
