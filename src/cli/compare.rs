@@ -1,11 +1,11 @@
 //! `optimize compare`, `optimize plot`, `optimize report` and `optimize schema`.
 
 use super::arguments::Comparison;
-use super::earlier::STATE;
+use super::earlier::state_in;
 use super::{DONE, Failure, NOT_REACHED, REPORT, print, record};
+use crate::driver::figures;
 use crate::driver::page::page;
 use crate::driver::recorded::Recorded;
-use crate::driver::{WarmStart, figures};
 use crate::report::{
     History, Optimum, Tolerances, prepare_directory, read_text, summary, write_all,
 };
@@ -57,8 +57,7 @@ fn from_record(
     let (_, optimum) = record(directory)?;
     let history = read_text(&directory.join("history.csv"))?;
     let history = History::from_csv(&history)?;
-    let state = std::fs::read(directory.join(STATE)).ok();
-    let state = state.and_then(|text| serde_json::from_slice::<WarmStart>(&text).ok());
+    let state = state_in(directory);
     let _held = prepare_directory(directory)?;
     let recorded = Recorded::of(&optimum, state.as_ref(), directory).map_err(Failure::bad_input)?;
     let files = make(&optimum, &recorded, &history)?.into_iter();

@@ -8,6 +8,12 @@ use std::path::Path;
 /// The state of the optimiser, for a warm start.
 pub(super) const STATE: &str = "state.json";
 
+/// The state of the optimiser in a result directory, if it is there and can be read.
+pub(super) fn state_in(directory: &Path) -> Option<WarmStart> {
+    let text = std::fs::read(directory.join(STATE)).ok()?;
+    serde_json::from_slice(&text).ok()
+}
+
 /// Moves the start to the design of another optimum. Returns its state, if there is one of the same
 /// design and problem.
 pub(super) fn start_from(problem: &mut Problem, from: &Path) -> Result<Option<WarmStart>, Failure> {
@@ -39,7 +45,6 @@ pub(super) fn start_from(problem: &mut Problem, from: &Path) -> Result<Option<Wa
         )));
     }
     problem.restart(&start);
-    let state = std::fs::read(record.with_file_name(STATE)).ok();
-    let state = state.and_then(|text| serde_json::from_slice::<WarmStart>(&text).ok());
+    let state = state_in(record.parent().unwrap_or(Path::new("")));
     Ok(state.filter(|state| state.fits(problem) && state.is_at(&start)))
 }

@@ -21,9 +21,11 @@ mod starts;
 mod statics;
 mod work_precision;
 
+use crate::driver::ends::Ends;
+use crate::driver::page::page;
 use crate::driver::{accuracy, figures};
 use crate::problem::{Override, Problem, visible, visible_lines};
-use crate::report::{Optimum, ReportError, atomic_write, read_text};
+use crate::report::{History, Optimum, ReportError, atomic_write, read_text};
 use arguments::{Arguments, Command, Job};
 use clap::Parser;
 use clap::error::ErrorKind;
@@ -222,10 +224,17 @@ fn read(job: &Job) -> Result<Problem, Failure> {
     Ok(problem)
 }
 
-/// Whether a file is the record of an optimum.
-fn is_record(path: &Path) -> bool {
-    let text = std::fs::read_to_string(path).unwrap_or_default();
-    Optimum::from_json(&text).is_ok()
+/// Writes the page of designs, and of the optimisation that led to the last, into a directory.
+fn write_report(
+    directory: &Path,
+    problem: &Problem,
+    summary: String,
+    ends: &Ends,
+    of_run: Option<(&Optimum, &History)>,
+) -> Result<(), Failure> {
+    let text = page(problem, summary, ends, of_run).map_err(Failure::numerical)?;
+    atomic_write(&directory.join(REPORT), text.as_bytes())?;
+    Ok(())
 }
 
 fn overrides(job: &Job) -> Result<Vec<Override>, Failure> {
@@ -240,7 +249,7 @@ fn read_with(job: &Job, overrides: &[Override]) -> Result<Problem, Failure> {
         let unread = File::open(&job.problem).and_then(|mut file| file.read(&mut byte));
         let unread = unread.err();
         let code = unread.map_or(BAD_INPUT, |error| code_of_reading(&error));
-        match is_record(&job.problem) {
+        match job.problem.is_file() && record(&job.problem).is_ok() {
             true => Failure::bad_input(format!(
                 "{0}: found the record of an optimum, expected a problem; `optimize PROBLEM --from {0}` and `simulate` take its design, \
                  `optimize report {1}` shows it",

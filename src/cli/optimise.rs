@@ -7,11 +7,10 @@ use super::parameters::{Parameter, add_sensitivities, parameter, sweep};
 use super::records::{Records, Start, refuse_without_run};
 use super::starts::{several, spread};
 use super::{
-    DONE, Failure, INTERRUPTED, NOT_REACHED, NUMERICAL_FAILURE, REPORT, draw, interrupt, print,
-    read, refine, shown, tell,
+    DONE, Failure, INTERRUPTED, NOT_REACHED, NUMERICAL_FAILURE, draw, interrupt, print, read,
+    refine, shown, tell, write_report,
 };
 use crate::driver::ends::Ends;
-use crate::driver::page::page;
 use crate::driver::{self, Optimisation, WarmStart, certificate, figures};
 use crate::optimiser::{Counts, Status};
 use crate::problem::Problem;
@@ -145,9 +144,7 @@ pub(crate) fn optimise(job: &Job, course: &RunOptions) -> Result<u8, Failure> {
     if recorded && (job.report || course.watch) {
         let ends = Ends::of_optimisation(&done);
         let of_run = Some((&done.optimum, &done.history));
-        let text = page(&problem, summary(&done.optimum), &ends, of_run);
-        let text = text.map_err(Failure::numerical)?;
-        write_all(&[(directory.join(REPORT), text.into_bytes())])?;
+        write_report(&directory, &problem, summary(&done.optimum), &ends, of_run)?;
     }
     match (&done.end, recorded && job.vtu) {
         (Some(driver::Simulated::Statics(end)), true) => {

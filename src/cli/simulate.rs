@@ -4,9 +4,10 @@ use super::aggregates::{add_smoothed, told};
 use super::arguments::Job;
 use super::earlier::start_from;
 use super::error_table::{self, table};
-use super::{DONE, Failure, NOT_REACHED, REPORT, draw, load, print, read, refine, shown, tell};
+use super::{
+    DONE, Failure, NOT_REACHED, draw, load, print, read, refine, shown, tell, write_report,
+};
 use crate::driver::ends::Ends;
-use crate::driver::page::page;
 use crate::driver::tables::ReactionAxes;
 use crate::driver::unfollowed::unfollowed;
 use crate::driver::{
@@ -81,10 +82,8 @@ pub(crate) fn simulate(
         }
         draw(directory, figures::of_simulation(&problem, &simulation));
         if job.report {
-            let text = summary(&problem, &simulation);
-            let text = page(&problem, text, &Ends::of_motion(&simulation), None);
-            let text = text.map_err(Failure::numerical)?;
-            write_all(&[(directory.join(REPORT), text.into_bytes())])?;
+            let (text, ends) = (summary(&problem, &simulation), Ends::of_motion(&simulation));
+            write_report(directory, &problem, text, &ends, None)?;
         }
         if !job.quiet {
             tell(&format!("results in {}\n", shown(directory)));

@@ -3,13 +3,12 @@
 use super::aggregates::{add_smoothed, told};
 use super::arguments::Job;
 use super::error_table::table;
-use super::{DONE, Failure, REPORT, draw, print, shown, tell};
+use super::{DONE, Failure, draw, print, shown, tell, write_report};
 use crate::driver::analysed::place;
 use crate::driver::ends::Ends;
-use crate::driver::page::page;
 use crate::driver::statics::{StaticDesign, error, fields, figures, precision};
 use crate::problem::Problem;
-use crate::report::{PrecisionOfMesh, plots, prepare_directory, write_all};
+use crate::report::{PrecisionOfMesh, plots, prepare_directory, with_space, write_all};
 use serde_json::{Map, Value, json};
 use std::fmt::Write;
 use std::path::Path;
@@ -95,14 +94,8 @@ pub(crate) fn simulate(job: &Job, problem: &Problem, json: bool) -> Result<u8, F
         }
         draw(directory, figures::figures(problem, &[("", &design)], None));
         if job.report {
-            let text = page(
-                problem,
-                summary(problem, &design),
-                &Ends::of_structure(&design),
-                None,
-            );
-            let text = text.map_err(Failure::numerical)?;
-            write_all(&[(directory.join(REPORT), text.into_bytes())])?;
+            let (text, ends) = (summary(problem, &design), Ends::of_structure(&design));
+            write_report(directory, problem, text, &ends, None)?;
         }
         if !job.quiet {
             tell(&format!("results in {}\n", shown(directory)));
@@ -154,9 +147,8 @@ fn summary(problem: &Problem, design: &StaticDesign) -> String {
     for (f, name) in problem.function_names.iter().enumerate() {
         let found = design.function(f);
         let unit = problem.function_unit(f);
-        let unit = if unit == "1" { "" } else { &unit };
-        let line = format!("  {name:width$}  {:>16.9e} {unit}", found.value);
-        text.push_str(line.trim_end());
+        let unit = with_space(Some(&unit));
+        let _ = write!(text, "  {name:width$}  {:>16.9e}{unit}", found.value);
         if let Some(peak) = found.peak {
             let place = place(&design.statics.cases, &peak);
             let _ = write!(text, "  true maximum {:.9e} at {place}", peak.ratio);

@@ -13,6 +13,7 @@ use crate::integrate::{IntegrationFailure, WorkCounts};
 use crate::math::soft_max::Smoothed;
 use crate::problem::{Asked, Problem};
 use crate::report::optimum::{Aggregate, Integration as IntegrationRecord, Lies};
+use crate::report::with_space;
 use crate::structures::functions::{self, Peak};
 
 /// A design that was analysed.
@@ -252,10 +253,7 @@ impl Simulated {
         let one = |&f: &usize| {
             let Smoothed { value, far } = self.smoothed(f)?;
             let name = &problem.function_names[f];
-            let unit = match problem.function_unit(f) {
-                unit if unit == "1" => String::new(),
-                unit => format!(" {unit}"),
-            };
+            let unit = with_space(Some(&problem.function_unit(f)));
             let far = far?;
             Some(Message {
                 name: name.clone(),

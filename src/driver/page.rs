@@ -27,6 +27,26 @@ const LEAST_FRAMES: usize = 12;
 /// Numbers of a joint or load at an instant.
 const OF_LINK: usize = 6;
 
+/// A design in motion, with its drawing and its stresses.
+struct Shown<'a> {
+    title: &'a str,
+    simulation: &'a Simulation,
+    drawing: Drawing,
+    stresses: Curves,
+}
+
+impl<'a> Shown<'a> {
+    fn new(problem: &Problem, title: &'a str, simulation: &'a Simulation) -> Self {
+        let drawing = problem.drawing(&simulation.at.x);
+        Self {
+            title,
+            simulation,
+            stresses: stresses(title, simulation, &drawing),
+            drawing,
+        }
+    }
+}
+
 /// The page of designs, and of the optimisation that led to the last.
 ///
 /// # Errors
@@ -37,13 +57,15 @@ pub(crate) fn page(
     ends: &Ends,
     of_run: Option<(&Optimum, &History)>,
 ) -> Result<String, serde_json::Error> {
-    let motions = &ends.motions;
+    let motions: Vec<Shown> = (ends.motions.iter())
+        .map(|(title, simulation)| Shown::new(problem, title, simulation))
+        .collect();
     let mut notes = Vec::new();
     let mut stages = of_structures::stages(problem, &ends.structures);
-    stages.extend(motions.iter().map(|own| stage(problem, own, &mut notes)));
+    stages.extend(motions.iter().map(|own| stage(own, &mut notes)));
     share_scales(&mut stages);
     let mut charts = of_run.map_or_else(Vec::new, |(_, history)| convergence(history));
-    charts.extend(curves(problem, motions));
+    charts.extend(curves(problem, &motions));
     page::html(&page::Page {
         name: &problem.name,
         description: problem.document["description"].as_str().unwrap_or(""),
@@ -86,7 +108,7 @@ fn share_scales(stages: &mut [Stage]) {
 }
 
 /// Curves of a motion against time: functions of interest, energies, stresses, displacements.
-fn curves(problem: &Problem, motions: &[(&str, &Simulation)]) -> Vec<Chart> {
+fn curves(problem: &Problem, motions: &[Shown]) -> Vec<Chart> {
     if motions.is_empty() {
         return Vec::new();
     }
@@ -112,8 +134,10 @@ fn curves(problem: &Problem, motions: &[(&str, &Simulation)]) -> Vec<Chart> {
     shown.sort_unstable();
     shown.dedup();
     for f in shown {
-        let of = |(title, own): &(&str, &Simulation)| {
-            let (written, run) = (&own.written, own.motion());
+        let of = |Shown {
+                      title, simulation, ..
+                  }: &Shown| {
+            let (written, run) = (&simulation.written, simulation.motion());
             let Function::Reduced { instant, .. } = written.functions.get(f)? else {
                 return None;
             };
@@ -141,10 +165,13 @@ fn curves(problem: &Problem, motions: &[(&str, &Simulation)]) -> Vec<Chart> {
         all.push(own);
     }
     let mut energies = Vec::new();
-    for (title, own) in motions {
-        let run = &own.at.run;
+    for Shown {
+        title, simulation, ..
+    } in motions
+    {
+        let run = &simulation.at.run;
         let times = || (0..=run.last()).map(|k| run.time(k));
-        let both = || times().zip(&own.observations);
+        let both = || times().zip(&simulation.observations);
         let kinetic = both().map(|(t, o)| [t, o.kinetic]);
         let potential = both().map(|(t, o)| [t, o.potential]);
         let total = both().map(|(t, o)| [t, o.kinetic + o.potential]);
@@ -153,25 +180,21 @@ fn curves(problem: &Problem, motions: &[(&str, &Simulation)]) -> Vec<Chart> {
         energies.push(Curve::new(named(title, "total"), total));
     }
     all.push(chart("Energy", "J", energies));
-    let drawn: Vec<Drawing> = motions
-        .iter()
-        .map(|(_, own)| problem.drawing(&own.at.x))
-        .collect();
-    let of = |curves: &dyn Fn(&str, &Simulation, &Drawing) -> Curves| {
-        let pairs = motions.iter().zip(&drawn);
-        let each = pairs.flat_map(|((title, own), drawing)| {
-            let found = curves(title, own, drawing);
+    let of = |curves: &dyn Fn(&Shown) -> Curves| {
+        let each = motions.iter().flat_map(|own| {
+            let found = curves(own);
             let time = found.time;
             found.curves.into_iter().map(move |(name, values)| {
                 let points = time.iter().zip(values).map(|(&t, v)| [t, v]);
-                Curve::new(named(title, &name), points)
+                Curve::new(named(own.title, &name), points)
             })
         });
         each.collect::<Vec<Curve>>()
     };
+    let deflected = |own: &Shown| deflections(own.title, own.simulation, &own.drawing);
     for (title, up, curves) in [
-        ("Largest stress", "Pa", of(&stresses)),
-        ("Displacement in the body's axes", "m", of(&deflections)),
+        ("Largest stress", "Pa", of(&|own| own.stresses.clone())),
+        ("Displacement in the body's axes", "m", of(&deflected)),
     ] {
         if !curves.is_empty() {
             all.push(chart(title, up, curves));
@@ -181,12 +204,13 @@ fn curves(problem: &Problem, motions: &[(&str, &Simulation)]) -> Vec<Chart> {
 }
 
 /// A design in motion.
-fn stage(
-    problem: &Problem,
-    (title, simulation): &(&str, &Simulation),
-    notes: &mut Vec<String>,
-) -> Stage {
-    let drawing = problem.drawing(&simulation.at.x);
+fn stage(shown: &Shown, notes: &mut Vec<String>) -> Stage {
+    let Shown {
+        title,
+        simulation,
+        drawing,
+        stresses,
+    } = shown;
     let (model, run) = (&simulation.written.model, simulation.motion());
     let bodies = || (0..model.bodies.len()).filter(|body| !model.is_internal(*body));
     let outlines = || bodies().map(|body| &drawing.outlines[body]);
@@ -206,7 +230,7 @@ fn stage(
     let all: Vec<Body> = bodies()
         .map(|body| Body {
             name: model.bodies[body].name.clone(),
-            shape: shape((simulation, &drawing), body, &frames, &detail),
+            shape: shape((simulation, drawing), body, &frames, &detail),
         })
         .collect();
     let list = |v: &Vec3<f64>| -> [f64; 3] { [v.x, v.y, v.z].map(rounded) };
@@ -228,15 +252,14 @@ fn stage(
         each.map(|&k| list(&traces::place(&Snapshot::of(model, run, k), trace)))
             .collect()
     };
-    let stressed = [stresses(title, simulation, &drawing)];
-    let coloured = colours(model, &drawing, &stressed);
+    let coloured = colours(model, drawing, std::slice::from_ref(stresses));
     Stage {
         title: (*title).to_owned(),
         times: frames.iter().map(|&k| run.time(k)).collect(),
         swings: false,
         clock: "t [s]",
         bodies: all,
-        links: (joined((model, run), &drawing, &frames).into_iter())
+        links: (joined((model, run), drawing, &frames).into_iter())
             .map(link)
             .collect(),
         paths: drawing.traces.iter().map(path).collect(),

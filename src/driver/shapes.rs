@@ -1,7 +1,7 @@
 //! Shapes of bodies on a page: rigid ones by their poses, those that deform as meshes.
 
 use super::elastic_figures::{displaced, elastic, has_stress};
-use super::shells;
+use super::shells::{self, QUARTERS};
 use super::simulate::Simulation;
 use crate::functions::snapshot::Snapshot;
 use crate::math::Vec3;
@@ -55,7 +55,7 @@ impl Detail {
     fn faces(&self, mesh: &ElementMesh) -> Vec<Vec<usize>> {
         let corners: Vec<[usize; 4]> = match self.is_thinned() {
             true => vec![[0, 2, 8, 6]],
-            false => [0, 1, 3, 4].map(|at| [at, at + 1, at + 4, at + 3]).to_vec(),
+            false => QUARTERS.to_vec(),
         };
         let of_element = |nodes: &[usize; 9]| -> Vec<Vec<usize>> {
             let each = corners.iter();
@@ -201,8 +201,8 @@ fn of_shells(
                 all.push(mean(&stress));
                 continue;
             }
-            for at in [0, 1, 3, 4] {
-                all.push(mean(&[at, at + 1, at + 4, at + 3].map(|g| stress[g])));
+            for corners in QUARTERS {
+                all.push(mean(&corners.map(|g| stress[g])));
             }
         }
         for beam in &drawing.fibres[body] {

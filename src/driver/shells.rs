@@ -9,6 +9,9 @@ use crate::system::finite::stress_ratios;
 
 /// Bodies with at most this number of elements are drawn in four parts an element, others in one.
 const IN_PARTS: usize = 40;
+/// The nodes, or Gauss points, at the corners of the quarters of an element.
+pub(super) const QUARTERS: [[usize; 4]; 4] =
+    [[0, 1, 4, 3], [1, 2, 5, 4], [3, 4, 7, 6], [4, 5, 8, 7]];
 
 /// The shells of a body, if it has some.
 pub(super) fn of(model: &Model<f64>, body: usize) -> Option<&FiniteElements<f64>> {
@@ -71,8 +74,7 @@ pub(super) fn patches(
             add(&WHOLE.map(|local| element.nodes[local]), mean(&stress));
             continue;
         }
-        for at in [0, 1, 3, 4] {
-            let corners = [at, at + 1, at + 4, at + 3];
+        for corners in QUARTERS {
             add(
                 &corners.map(|local| element.nodes[local]),
                 mean(&corners.map(|g| stress[g])),

@@ -53,6 +53,7 @@ pub(crate) use files::{atomic_write, path_between, prepare_directory, read_text,
 pub(crate) use history::{History, HistoryRow};
 pub(crate) use history_log::HistoryLog;
 pub(crate) use mesh_precision::{MeshRow, PrecisionOfMesh};
+pub(crate) use number::with_space;
 pub(crate) use optima::{FoundOptimum, optima_csv};
 pub(crate) use optimum::Optimum;
 pub(crate) use stability::{StabilityFamily, StabilityOutcome, StabilityRow, StabilityTable};

@@ -42,6 +42,12 @@ pub(super) fn grouped(count: u64) -> String {
     out
 }
 
+/// A unit after its number; nothing for numbers without one.
+pub(crate) fn with_space(unit: Option<&str>) -> String {
+    let unit = unit.filter(|unit| !["", "1"].contains(unit));
+    unit.map(|unit| format!(" {unit}")).unwrap_or_default()
+}
+
 #[cfg(test)]
 mod tests {
     use super::*;

@@ -1,7 +1,7 @@
 //! The text that a person reads at the end of an optimisation.
 
 use super::certificate;
-use super::number::{grouped, significant};
+use super::number::{grouped, significant, with_space};
 use super::optimum::{
     Activity, Aggregate, BoundSide, Curvature, KktResiduals, Optimum, SecondOrder, Sense,
 };
@@ -388,9 +388,4 @@ fn interval(lower: Option<f64>, upper: Option<f64>) -> String {
         (None, Some(b)) => format!("≤ {}", number(b)),
         (None, None) => String::new(),
     }
-}
-
-fn with_space(unit: Option<&str>) -> String {
-    let unit = unit.filter(|unit| !["", "1"].contains(unit));
-    unit.map(|unit| format!(" {unit}")).unwrap_or_default()
 }

@@ -187,18 +187,18 @@ pub(super) fn thickness(title: &str, design: &StaticDesign) -> Option<StructureV
     Some(view)
 }
 
-/// Places of the nodes with the part `share` of displacements that are magnified until they are visible, and the factor
-/// of the whole.
-fn magnified(design: &StaticDesign, u: &[Vec3<f64>], share: f64) -> (Vec<Vec3<f64>>, f64) {
-    let largest = u.iter().map(|u| u.norm()).fold(0.0, f64::max);
-    let factor = if largest > 0.0 {
-        SHOWN * size(design) / largest
-    } else {
-        0.0
-    };
+/// The factor that makes displacements visible in a picture of this size.
+fn factor(size: f64, largest: f64) -> f64 {
+    match largest > 0.0 {
+        true => SHOWN * size / largest,
+        false => 0.0,
+    }
+}
+
+/// Places of the nodes with displacements times a factor.
+fn moved(design: &StaticDesign, u: &[Vec3<f64>], factor: f64) -> Vec<Vec3<f64>> {
     let pairs = design.scene.structure.nodes.iter().zip(u);
-    let places = pairs.map(|(x, u)| x + u * (factor * share));
-    (places.collect(), factor)
+    pairs.map(|(x, u)| x + u * factor).collect()
 }
 
 /// The factors that make displacements visible, by load case: the same for all designs, so that they can be compared.
@@ -219,11 +219,7 @@ pub(super) fn factors(designs: &[(&str, &StaticDesign)]) -> Vec<f64> {
         });
         let largest = largest.fold(0.0, f64::max);
         let size = designs.iter().map(|(_, own)| size(own)).fold(0.0, f64::max);
-        if largest > 0.0 {
-            SHOWN * size / largest
-        } else {
-            0.0
-        }
+        factor(size, largest)
     };
     (0..first.solutions.len()).map(of_case).collect()
 }
@@ -268,13 +264,7 @@ pub(super) fn deformed(
         } = of_case(design, case)?;
         let known = along.iter().any(|&stress| stress != UNKNOWN);
         let factor = factors[case];
-        let pairs = design
-            .scene
-            .structure
-            .nodes
-            .iter()
-            .zip(&motion.displacement);
-        let places: Vec<Vec3<f64>> = pairs.map(|(x, u)| x + u * (factor * share)).collect();
+        let places = moved(design, &motion.displacement, factor * share);
         let yields = yield_stresses(design);
         // The larger of both faces at the four Gauss points of a quarter, in MPa.
         let of_shell = |index: usize, i: usize, j: usize| {
@@ -357,7 +347,9 @@ pub(super) fn modes(design: &StaticDesign, share: f64) -> Vec<StructureView> {
         .take(MOST_MODES);
     let one = |(k, (x, lambda)): (usize, (&Vec<f64>, &f64))| {
         let motion = design.motion_of_mode(x)?;
-        let (places, factor) = magnified(design, &motion, share);
+        let largest = motion.iter().map(|u| u.norm()).fold(0.0, f64::max);
+        let factor = factor(size(design), largest);
+        let places = moved(design, &motion, factor * share);
         let f = lambda.sqrt() / (2.0 * PI);
         let text = format!("mode {}, {f:.2} Hz", k + 1);
         let size = |node: usize| factor * motion[node].norm() / (SHOWN * size(design));

@@ -1,7 +1,7 @@
 // The page: one clock and one camera for all machines, tables, curves.
 const data = JSON.parse(document.getElementById("data").textContent), main = document.getElementById("page");
 main.replaceChildren(element("h1", data.name)); if (data.description) main.append(element("p", data.description, "faint"));
-if (data.optimum) main.append(...optimumTables(data.optimum).slice(0, 2));
+const [verdict, change, ...tables] = data.optimum ? optimumTables(data.optimum) : []; if (verdict) main.append(verdict, change);
 const scenes = data.stages.map((stage, i) => new Scene(stage, i)), charts = data.charts.map((chart, i) => new LineChart(chart, i));
 const player = { share: 0, speed: 1, playing: false, last: 0 };
 const moving = scenes.filter(s => s.stage.times.length > 1), length = s => s.stage.swings ? 1 : s.stage.times[s.stage.times.length - 1];
@@ -52,7 +52,7 @@ for (const s of scenes) {
     e.preventDefault(); show();
   });
 }
-if (data.optimum) main.append(...optimumTables(data.optimum).slice(2));
+main.append(...tables);
 if (charts.length) { main.append(element("h2", "Curves")); const row = element("div", undefined, "row"); row.append(...charts.map(c => c.figure)); main.append(row); }
 if (data.optimum) main.append(element("h2", "Record"), recordTables(data.optimum));
 if (data.summary) { const pre = element("pre", data.summary); main.append(element("h2", "As the terminal shows it"), pre); }

@@ -30,8 +30,8 @@ class Camera {
       const c = Math.cos(angle), s = Math.sin(angle), w = cross(axis, v), d = dot(axis, v) * (1 - c);
       return v.map((x, i) => x * c + w[i] * s + axis[i] * d);
     };
-    const upright = this.first[1].map((_, i) => this.first[1][i]);
-    this.right = about(this.right, unit(upright), -dx); this.up = about(this.up, unit(upright), -dx);
+    const upright = unit(this.first[1]);
+    this.right = about(this.right, upright, -dx); this.up = about(this.up, upright, -dx);
     this.up = about(this.up, this.right, -dy); this.right = unit(this.right); this.up = unit(this.up);
   }
 }
