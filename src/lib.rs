@@ -31,48 +31,41 @@
 //! ```
 //!
 //! A folder imports only from folders above its own in this list (`tests/files/layers.rs` checks
-//! it):
+//! it). `mathematics`, `mechanics`, `optimiser`, `document`, `problem`, `report` and `driver` are crates of their
+//! own, so that they compile beside each other and an edit compiles only what lies below it:
 //!
 //! | Folder | What lives there |
 //! |---|---|
-//! | `math` | scalars (real, complex, dual), rotations, smooth maxima |
-//! | `linalg` | static sparsity patterns, sparse LU and Cholesky |
-//! | `model` | bodies, joints, loads, gravity: parameters without state |
-//! | `structures` | shells and beams as finite elements: statics, modes, exact gradients |
-//! | `system` | kinematics, dynamics, constraints, loads with all derivatives; consistent starts |
-//! | `integrate` | integration methods, explicit and implicit: equations, steps, trajectories |
-//! | `functions` | functions of interest and their derivatives |
-//! | `adjoint` | exact gradients: the backward march through each method |
-//! | `lower` | reductions of a scene before integration, and their conditions |
+//! | `mathematics/math` | scalars (real, complex, dual), rotations, smooth maxima |
+//! | `mathematics/linalg` | static sparsity patterns, sparse LU and Cholesky |
+//! | `mechanics/model` | bodies, joints, loads, gravity: parameters without state |
+//! | `mechanics/structures` | shells and beams as finite elements: statics, modes, exact gradients |
+//! | `mechanics/system` | kinematics, dynamics, constraints, loads with all derivatives; consistent starts |
+//! | `mechanics/integrate` | integration methods, explicit and implicit: equations, steps, trajectories |
+//! | `mechanics/functions` | functions of interest and their derivatives |
+//! | `mechanics/adjoint` | exact gradients: the backward march through each method |
+//! | `mechanics/lower` | reductions of a scene before integration, and their conditions |
 //! | `optimiser` | nonlinear programs, without mechanics |
-//! | `problem` | the problem file: faults, schema, the map from a design to a scene |
+//! | `document` | the document of a problem file: structures and schema |
+//! | `problem` | the problem file: faults, and the map from a design to a scene |
 //! | `report` | records, comparison, tables, figures, text |
 //! | `driver` | simulate, check, optimise; estimate errors, measure methods |
 //! | `library` | the public interface: simulate, differentiate, check and optimise a problem |
 //! | `cli` | the command line |
 
-#![cfg_attr(not(test), warn(unreachable_pub))]
+#![warn(missing_docs)]
 
-mod adjoint;
 pub mod cli;
-mod driver;
-mod functions;
-mod integrate;
 mod library;
-mod linalg;
-mod lower;
-mod math;
-mod model;
-pub mod optimiser;
-mod problem;
-mod report;
-pub mod structures;
-mod system;
-#[cfg(test)]
-mod tests;
 
-#[cfg(test)]
-extern crate self as flexbody;
+use flexbody_driver as driver;
+use flexbody_mathematics::math;
+use flexbody_mechanics::{functions, integrate};
+use flexbody_problem as problem;
+use flexbody_report as report;
+
+pub use flexbody_mechanics::structures;
+pub use flexbody_optimiser as optimiser;
 
 pub use library::{
     Analysis, BodyState, CheckedDerivative, Design, Iteration, Motion, Optimum, SimulationError,

@@ -2,23 +2,36 @@
 
 use super::new::Starter;
 use super::range::{Range, range};
-use clap::{Args, Parser, Subcommand};
+use clap::{ArgAction, Args, Parser, Subcommand};
 use std::path::PathBuf;
 
+/// The page of `--help`: the commands that most users need come first.
+const PAGE: &str = "\
+{about}.
+
+Most used:
+  optimize new crank --from linkage  writes crank.json, a problem file to start from
+  optimize crank.json --report       finds the best design; record, figures and page in results/crank/
+  optimize compare NEW BASELINE      compares two records, for CI
+
+{usage-heading} {usage}
+
+{all-args}
+
+{after-help}";
+
 /// Designs flexible multibody systems by gradient.
-///
-/// `optimize PROBLEM` finds the best design and writes its record and figures to
-/// results/<name of the problem>/.
 #[derive(Debug, Parser)]
 #[command(
     name = "optimize",
     version,
     args_conflicts_with_subcommands = true,
     arg_required_else_help = true,
-    after_help = "Exit codes: 0 done; 1 not converged, or a check (gradients, --second-order) or \
-                  comparison failed; \
-                  2 bad input; 3 numerical failure; 4 a file cannot be read or written; \
-                  130 interrupted by a signal."
+    disable_help_flag = true,
+    help_template = PAGE,
+    after_help = "More options: `optimize manual | man -l -`. Of a command: `optimize COMMAND --help`.\n\
+                  Exit codes: 0 done; 1 not converged, or a check or comparison failed; 2 bad input;\n\
+                  3 numerical failure; 4 a file cannot be read or written; 130 interrupted."
 )]
 pub(crate) struct Arguments {
     /// The command, if it is not the optimisation.
@@ -30,45 +43,58 @@ pub(crate) struct Arguments {
     /// Start and options of the optimisation.
     #[command(flatten)]
     pub course: RunOptions,
+    /// Prints this page.
+    #[arg(long, short, action = ArgAction::HelpShort)]
+    pub help: Option<bool>,
 }
 
 /// Start and options of an optimisation.
 #[derive(Args, Debug)]
 pub(crate) struct RunOptions {
-    /// Continues the run in this directory that was killed, interrupted or reached a limit. Its
-    /// evaluations are not repeated. Settings of the optimiser may differ.
+    /// Continues the run in this directory.
+    ///
+    /// It was killed, interrupted or reached a limit. Its evaluations are not repeated. Settings of the optimiser may
+    /// differ.
     #[arg(long, value_name = "DIR")]
     pub resume: Option<PathBuf>,
-    /// Starts from the design in another optimum.json (or its directory), by names of variables.
-    /// Uses the state.json in the same directory if it belongs to this design.
+    /// Starts from the design in another optimum.json (or its directory).
+    ///
+    /// Variables are found by their names. Uses the state.json in the same directory if it belongs to this design.
     #[arg(long, value_name = "FILE")]
     pub from: Option<PathBuf>,
-    /// Optimises from this many starts, spread evenly between the bounds, and keeps the best.
-    /// Writes all optima to optima.csv.
+    /// Optimises from this many starts and keeps the best.
+    ///
+    /// They are spread evenly between the bounds. Writes all optima to optima.csv.
     #[arg(long, value_name = "N", value_parser = clap::value_parser!(u32).range(1..=10_000))]
     pub starts: Option<u32>,
-    /// Reports the derivative of the optimal objective by a number of the file that is not designed,
-    /// by a JSON Pointer as /bodies/arm/mass. May be repeated.
-    #[arg(long, value_name = "PATH")]
+    /// Reports the derivative of the optimal objective by a number of the file.
+    ///
+    /// The number is not designed. It is given by a JSON Pointer as /bodies/arm/mass. May be repeated.
+    #[arg(long, value_name = "PATH", hide_short_help = true)]
     pub sensitivity: Vec<String>,
-    /// Optimises for n values of a number of the file from a to b, each from the optimum before and
-    /// from the start of the file, or from all of --starts, and keeps the better. Writes sweep.csv
-    /// and sweep.svg instead of the other results.
+    /// Optimises for n values of a number of the file from a to b.
+    ///
+    /// Each starts from the optimum before and from the start of the file, or from all of --starts, and the better is
+    /// kept. Writes sweep.csv and sweep.svg instead of the other results.
     #[arg(long, value_name = "PATH=a..b,n", value_parser = range,
           conflicts_with_all = ["resume", "from", "second_order", "sensitivity"])]
     pub sweep: Option<Range>,
-    /// Checks by differences of gradients whether the optimum is a minimum of second order. Exit
-    /// code 1 if it is not.
-    #[arg(long)]
+    /// Checks whether the optimum is a minimum of second order.
+    ///
+    /// By differences of gradients. Exit code 1 if it is not.
+    #[arg(long, hide_short_help = true)]
     pub second_order: bool,
-    /// Rewrites report.html with the convergence so far after every iteration, at most once a second. A browser that has it
-    /// open shows the newest every two seconds; at the end it is the report.
+    /// Rewrites report.html after every iteration: open it in a browser to watch the run.
+    ///
+    /// At most once a second, with the convergence so far. A browser that has it open shows the newest every two seconds;
+    /// at the end it is the report.
     #[arg(long, conflicts_with_all = ["starts", "sweep"])]
     pub watch: bool,
-    /// Skips the certificate of the gradients. It compares one directional derivative of every
-    /// function by the adjoint with the complex step, at start and optimum; exit code 1 if they
-    /// differ.
-    #[arg(long)]
+    /// Skips the certificate of the gradients.
+    ///
+    /// It compares one directional derivative of every function by the adjoint with the complex step, at start and
+    /// optimum; exit code 1 if they differ.
+    #[arg(long, hide_short_help = true)]
     pub no_certificate: bool,
 }
 
@@ -77,41 +103,49 @@ pub(crate) struct RunOptions {
 pub(crate) struct Job {
     /// Problem file (JSON).
     pub problem: PathBuf,
-    /// Directory for the results [default: results/<name of the problem>, for `work-precision`
-    /// results/work-precision/<name>; `simulate` writes files only if this is given].
+    /// Directory for the results.
+    ///
+    /// Default: results/<name of the problem>, for `work-precision` results/work-precision/<name>; `simulate` writes
+    /// files only if this is given.
     #[arg(long, short)]
     pub output: Option<PathBuf>,
     /// No progress and no summary.
     #[arg(long, short)]
     pub quiet: bool,
-    /// Changes one value of the file for this run, by a JSON Pointer and a JSON value, as in
-    /// /bodies/arm/mass=42. May be repeated.
+    /// Changes one value of the file for this run, as in /bodies/arm/mass=42.
+    ///
+    /// By a JSON Pointer and a JSON value. May be repeated.
     #[arg(long, value_name = "PATH=VALUE")]
     pub set: Vec<String>,
-    /// Limits the memory for the data that gradients need: 500MB, 2GiB. A gradient repeats steps
-    /// that are not stored, at most twenty times. The memory for this is used even if the limit is
-    /// smaller; see `optimize explain` [default: half of the available memory].
-    #[arg(long, value_name = "SIZE", value_parser = bytes)]
+    /// Limits the memory for the data that gradients need: 500MB, 2GiB.
+    ///
+    /// A gradient repeats steps that are not stored, at most twenty times. The memory for this is used even if the limit
+    /// is smaller; see `optimize explain`. Default: half of the available memory.
+    #[arg(long, value_name = "SIZE", value_parser = bytes, hide_short_help = true)]
     pub memory: Option<usize>,
     /// Integrates the scene as written, without reductions.
-    #[arg(long)]
+    #[arg(long, hide_short_help = true)]
     pub no_lowering: bool,
-    /// Reports the estimated discretisation error of every function and of its gradient, by a
-    /// second simulation with steps of half the size; and that of bases of flexible bodies, by one with all nodes and
-    /// more functions of beams.
+    /// Reports the estimated error of every function and of its gradient.
+    ///
+    /// The error of the discretisation in time, by a second simulation with steps of half the size; and that of bases of
+    /// flexible bodies, by one with all nodes and more functions of beams.
     #[arg(long)]
     pub error: bool,
-    /// Writes the fields of structures to fields.vtu beside the results, for ParaView and meshio. Of shells that
-    /// move it writes fields_0000.vtu and so on, at most 101 instants, and their list fields.pvd.
-    #[arg(long)]
+    /// Writes the fields of structures to fields.vtu, for ParaView and meshio.
+    ///
+    /// Of shells that move it writes fields_0000.vtu and so on, at most 101 instants, and their list fields.pvd.
+    #[arg(long, hide_short_help = true)]
     pub vtu: bool,
-    /// Writes report.html beside the results: one page for any browser, without a network, that shows the machine in
-    /// motion, tables and curves.
+    /// Writes report.html beside the results, one page to open or to send.
+    ///
+    /// It shows the machine in motion, tables and curves, in any browser, without a network.
     #[arg(long)]
     pub report: bool,
-    /// Refines steps, samples and reduced bases until the estimated relative error of the objective at the start is
-    /// below this value. They are never coarser than in the file.
-    #[arg(long, value_name = "ERROR", value_parser = positive)]
+    /// Refines steps, samples and reduced bases to this relative error of the objective.
+    ///
+    /// The error is estimated at the start. They are never coarser than in the file.
+    #[arg(long, value_name = "ERROR", value_parser = positive, hide_short_help = true)]
     pub accuracy: Option<f64>,
 }
 
@@ -126,9 +160,10 @@ pub(crate) enum Command {
         #[arg(long, value_enum, default_value_t = Starter::Pendulum)]
         from: Starter,
     },
-    /// Simulate the problem's start and report its functions, energy and constraint drift. With
-    /// --output it draws the motion and writes simulation.csv (energy, momentum, drift, joint
-    /// reactions), motion.csv (all bodies) and functions.csv (all quantities) over time.
+    /// Simulate the start, or a recorded design: functions, energy, drift.
+    ///
+    /// With --output it draws the motion and writes simulation.csv (energy, momentum, drift, joint reactions), motion.csv
+    /// (all bodies) and functions.csv (all quantities) over time.
     Simulate {
         /// The problem.
         #[command(flatten)]
@@ -156,8 +191,9 @@ pub(crate) enum Command {
         #[arg(long, default_value_t = 1e-10, value_parser = positive)]
         tolerance: f64,
     },
-    /// Report the contents of the scene, which reductions are made and why, and the reduced scene:
-    /// unknowns, elimination, method, memory, and the dependencies of the functions.
+    /// Report what the scene contains, and what is left out and why.
+    ///
+    /// Reductions, and the reduced scene: unknowns, elimination, method, memory, and the dependencies of the functions.
     Explain {
         /// The problem.
         #[command(flatten)]
@@ -166,11 +202,13 @@ pub(crate) enum Command {
         #[arg(long)]
         json: bool,
     },
-    /// Measure error against run time for all methods, orders, steps and tolerances. Writes
-    /// work_precision.csv, orders.csv and work_precision.svg.
+    /// Measure error against run time for all methods and steps.
+    ///
+    /// All orders and tolerances. Writes work_precision.csv, orders.csv and work_precision.svg.
     WorkPrecision(Measurement),
-    /// Run the program on extreme scenes and check its results. Writes stability.md and
-    /// stability.csv. Exit code 1 if a result is wrong without a warning.
+    /// Run the program on extreme scenes and check its results.
+    ///
+    /// Writes stability.md and stability.csv. Exit code 1 if a result is wrong without a warning.
     Stability(Suite),
     /// The former name of `stability`.
     #[command(hide = true, disable_help_flag = true)]
@@ -179,14 +217,16 @@ pub(crate) enum Command {
         #[arg(trailing_var_arg = true, allow_hyphen_values = true)]
         rest: Vec<std::ffi::OsString>,
     },
-    /// Compare two records of optimal designs; exit code 1 if they differ beyond tolerance.
+    /// Compare two records; exit code 1 if they differ beyond tolerance.
     Compare(Comparison),
     /// Draw the figures of a result directory again, from its record.
     Plot {
         /// Directory with optimum.json and history.csv.
         directory: PathBuf,
     },
-    /// Write report.html into a result directory, from its record: the machine in motion, tables and curves.
+    /// Write report.html into a result directory, from its record.
+    ///
+    /// It shows the machine in motion, tables and curves.
     Report {
         /// Directory with optimum.json and history.csv.
         directory: PathBuf,

@@ -160,6 +160,7 @@ pub fn run(arguments: impl Iterator<Item = OsString>) -> ExitCode {
             None => Err(Failure::bad_input("no problem file; see optimize --help")),
         },
     };
+    progress::hide_bar();
     match done {
         Ok(code) => ExitCode::from(code),
         Err(failure) => {
@@ -177,17 +178,21 @@ fn shown(path: &Path) -> String {
 /// Writes progress or a fault to standard error. A failure to write is ignored.
 fn tell(text: &str) {
     use std::io::Write;
-    let _ = io::stderr()
-        .lock()
-        .write_all(visible_lines(text).as_bytes());
+    let text = visible_lines(text);
+    progress::bar().suspend(|| {
+        let _ = io::stderr().lock().write_all(text.as_bytes());
+    });
 }
 
 /// Prints a result. A reader that closed the pipe is no failure.
 fn print(text: &str) -> Result<(), Failure> {
     use std::io::Write;
-    let mut out = std::io::stdout().lock();
     let text = visible_lines(text);
-    match out.write_all(text.as_bytes()).and_then(|()| out.flush()) {
+    let written = progress::bar().suspend(|| {
+        let mut out = std::io::stdout().lock();
+        out.write_all(text.as_bytes()).and_then(|()| out.flush())
+    });
+    match written {
         Err(error) if error.kind() != io::ErrorKind::BrokenPipe => Err(Failure::new(
             NO_ACCESS,
             format!("cannot write the result: {error}"),

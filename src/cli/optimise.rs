@@ -131,6 +131,11 @@ pub(crate) fn optimise(job: &Job, course: &RunOptions) -> Result<u8, Failure> {
     if !job.quiet || unwritten.is_some() {
         print(&summary(&done.optimum))?;
         tell(&times(&done.outcome.counts, certified));
+        if let Some(driver::Simulated::Motion(end)) = &done.end
+            && let Some(note) = end.many_steps(&problem)
+        {
+            tell(&format!("{note}\n"));
+        }
         if of_one_start {
             tell(
                 "a local optimum, as one start finds it: --starts 4 seeks better ones from other starts\n",

@@ -1,6 +1,7 @@
 //! Parameters that are not designed: `--sensitivity PATH` and `--sweep PATH=a..b,n`.
 
 use super::arguments::Job;
+use super::progress::Counter;
 use super::range::Range;
 use super::starts::spread;
 use super::{
@@ -163,6 +164,7 @@ pub(super) fn sweep(job: &Job, base: &Problem, range: &Range, starts: u32) -> Re
         let all = problems.len();
         tell(&format!("continues after {known} of {all} optima\n"));
     }
+    let counter = (!job.quiet).then(|| Counter::new("values", problems.len() - known));
     for (value, problem) in range.values().zip(problems).skip(known) {
         let last = found.iter().flat_map(|sweep| &sweep.optima);
         let last = last.rev().find(|optimum| optimum.converged);
@@ -199,7 +201,11 @@ pub(super) fn sweep(job: &Job, base: &Problem, range: &Range, starts: u32) -> Re
         });
         sweep.optima.push(optimum);
         write(sweep, &directory)?;
+        if let Some(counter) = &counter {
+            counter.one();
+        }
     }
+    drop(counter);
     let Some(found) = found else {
         return Err(Failure::bad_input("nothing to optimise"));
     };

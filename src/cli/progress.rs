@@ -1,9 +1,12 @@
-//! Progress of an optimisation or a long simulation.
+//! Progress of an optimisation or a long simulation: a bar on a terminal, lines elsewhere.
 
 use super::tell;
 use crate::integrate::Progress;
 use crate::integrate::limits::View;
 use crate::report::History;
+use indicatif::{ProgressBar, ProgressStyle};
+use std::io::IsTerminal;
+use std::sync::atomic::{AtomicBool, Ordering};
 use std::sync::{Arc, OnceLock};
 use std::time::Duration;
 
@@ -12,6 +15,8 @@ const LONG: f64 = 2.0;
 const MOST: f64 = 30.0;
 /// Interval at which the simulations are checked.
 const LOOK: Duration = Duration::from_millis(500);
+/// Parts of the bar of one simulation.
+const PARTS: f64 = 1000.0;
 
 /// The progress of the simulations of this process.
 pub(crate) fn progress() -> Arc<Progress> {
@@ -19,35 +24,123 @@ pub(crate) fn progress() -> Arc<Progress> {
     Arc::clone(PROGRESS.get_or_init(Arc::default))
 }
 
-/// Reports long simulations on standard error: after 2 s, then after twice the time of the last line, at least
-/// every 30 s.
+/// The bar below the lines of standard error. It is hidden until something takes long.
+pub(super) fn bar() -> &'static ProgressBar {
+    static BAR: OnceLock<ProgressBar> = OnceLock::new();
+    BAR.get_or_init(|| ProgressBar::with_draw_target(None, indicatif::ProgressDrawTarget::hidden()))
+}
+
+/// Whether the bar counts the parts of a command.
+static COUNTS: AtomicBool = AtomicBool::new(false);
+
+fn show_bar(length: u64, template: &str) {
+    let bar = bar();
+    if let Ok(style) = ProgressStyle::with_template(template) {
+        bar.set_style(style.progress_chars("=> "));
+    }
+    bar.reset();
+    bar.set_length(length);
+    bar.set_draw_target(indicatif::ProgressDrawTarget::stderr());
+}
+
+/// Clears the bar.
+pub(super) fn hide_bar() {
+    bar().finish_and_clear();
+    bar().set_draw_target(indicatif::ProgressDrawTarget::hidden());
+}
+
+/// Counts the `total` parts of a long command on the bar: done, rate, remaining time. Without a terminal it does
+/// nothing.
+pub(crate) struct Counter;
+
+impl Counter {
+    /// Begins to count.
+    pub(crate) fn new(what: &str, total: usize) -> Self {
+        if std::io::stderr().is_terminal() {
+            COUNTS.store(true, Ordering::Relaxed);
+            let parts = "[{bar:30}] {pos} of {len} ";
+            show_bar(
+                total as u64,
+                &format!("{parts}{what}, {{per_sec}}, {{eta}} left {{msg}}"),
+            );
+        }
+        Self
+    }
+
+    /// One part is done.
+    pub(crate) fn one(&self) {
+        bar().inc(1);
+    }
+}
+
+impl Drop for Counter {
+    fn drop(&mut self) {
+        COUNTS.store(false, Ordering::Relaxed);
+        hide_bar();
+    }
+}
+
+/// Reports long simulations on standard error. On a terminal: a bar after 2 s. Elsewhere: a line after 2 s, then after
+/// twice the time of the last line, at least every 30 s.
 pub(crate) fn watch() {
     static WATCHED: OnceLock<()> = OnceLock::new();
     WATCHED.get_or_init(|| {
         let seen = progress();
+        let on_terminal = std::io::stderr().is_terminal();
         // The thread ends with the process.
-        std::thread::spawn(move || {
-            let mut due = LONG;
-            loop {
-                std::thread::sleep(LOOK);
-                match seen.longest() {
-                    Some(view) if view.seconds >= due => {
-                        tell(&line(&view));
-                        due = (2.0 * view.seconds).min(view.seconds + MOST);
-                    }
-                    // Another simulation is the longest now.
-                    Some(view) if view.seconds < LONG => due = LONG,
-                    Some(_) => {}
-                    None => due = LONG,
-                }
-            }
+        std::thread::spawn(move || match on_terminal {
+            true => draw_bars(&seen),
+            false => tell_lines(&seen),
         });
     });
 }
 
+fn draw_bars(seen: &Progress) {
+    let mut drawn = false;
+    loop {
+        std::thread::sleep(LOOK);
+        let long = seen.longest().filter(|view| view.seconds >= LONG);
+        let counts = COUNTS.load(Ordering::Relaxed);
+        match long {
+            Some(view) if counts => bar().set_message(format!("({})", line(&view))),
+            Some(view) => {
+                if !drawn {
+                    show_bar(PARTS as u64, "[{bar:30}] {percent} %, {eta} left: {msg}");
+                }
+                drawn = true;
+                bar().set_position((PARTS * view.time / view.duration) as u64);
+                bar().set_message(line(&view));
+            }
+            None if counts => bar().set_message(""),
+            None if drawn => {
+                drawn = false;
+                hide_bar();
+            }
+            None => {}
+        }
+    }
+}
+
+fn tell_lines(seen: &Progress) {
+    let mut due = LONG;
+    loop {
+        std::thread::sleep(LOOK);
+        match seen.longest() {
+            Some(view) if view.seconds >= due => {
+                tell(&format!("simulating: {}\n", line(&view)));
+                due = (2.0 * view.seconds).min(view.seconds + MOST);
+            }
+            // Another simulation is the longest now.
+            Some(view) if view.seconds < LONG => due = LONG,
+            Some(_) => {}
+            None => due = LONG,
+        }
+    }
+}
+
 fn line(view: &View) -> String {
     format!(
-        "simulating: t = {:.6e} s of {} s after {:.0} s, {} steps, {} rejected\n",
+        "t = {:.6e} s of {} s after {:.0} s, {} steps, {} rejected",
         view.time, view.duration, view.seconds, view.steps, view.rejected
     )
 }

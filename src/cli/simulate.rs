@@ -227,6 +227,9 @@ fn summary(problem: &Problem, simulation: &Simulation) -> String {
     if let Some(warning) = &simulation.warning {
         let _ = writeln!(text, "  warning: {warning}");
     }
+    if let Some(note) = simulation.many_steps(problem) {
+        let _ = writeln!(text, "  note: {note}");
+    }
     for note in driver::start::notes(problem, &simulation.at.x) {
         let _ = writeln!(text, "  start: {note}");
     }

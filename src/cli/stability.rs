@@ -1,6 +1,7 @@
 //! `optimize stability`.
 
 use super::arguments::Suite;
+use super::progress::Counter;
 use super::{DONE, Failure, NOT_REACHED, print, shown, tell};
 use crate::driver::stability::{is_named, names, stability as run};
 use crate::report::{StabilityRow, prepare_directory, write_all};
@@ -32,12 +33,17 @@ pub(crate) fn stability(asked: &Suite) -> Result<u8, Failure> {
         Some(directory) => Some(prepare_directory(directory)?),
         None => None,
     };
+    let cases = names(false).into_iter();
+    let cases = cases.filter(|case| wanted(case)).count();
+    let counter = (!asked.quiet).then(|| Counter::new("cases", cases));
     let seen = |row: &StabilityRow| {
-        if !asked.quiet {
+        if let Some(counter) = &counter {
             tell(&line(row));
+            counter.one();
         }
     };
     let table = run(wanted, asked.seconds, &seen);
+    drop(counter);
     // The table is printed first, so a failure to write does not lose it.
     if !asked.quiet {
         print(&format!("{}\n", table.summary()))?;

@@ -1,5 +1,6 @@
 //! `optimize PROBLEM --starts N`: the best of several optimisations.
 
+use super::progress::Counter;
 use super::records::{Records, Start, changed};
 use super::{Failure, INTERRUPTED, print, tell};
 use crate::driver::multi_start::{self, LocalOptimum, Run};
@@ -32,7 +33,11 @@ pub(crate) fn several(
     let fault: Mutex<Option<ReportError>> = Mutex::new(None);
     let told = AtomicBool::new(quiet);
     let known = AtomicUsize::new(0);
+    let counter = (!quiet).then(|| Counter::new("starts begun", starts.len()));
     let open = |k: usize, problem: &Problem| -> Option<KnownEvaluations<'_>> {
+        if let Some(counter) = &counter {
+            counter.one();
+        }
         match records.open(Start::OneOf(k), problem) {
             Ok(opened) => {
                 known.fetch_add(opened.known, Ordering::Relaxed);
@@ -53,6 +58,7 @@ pub(crate) fn several(
     let has_failed = || fault.lock().is_ok_and(|error| error.is_some());
     let ended = || stopped() || has_failed();
     let mut runs = driver::multi_start(problem, starts, &ended, &open);
+    drop(counter);
     let lost = fault.lock().ok().and_then(|mut first| first.take());
     if !quiet {
         tell(&records.resumed(known.load(Ordering::Relaxed)));

@@ -24,7 +24,7 @@ const FINEST: (f64, usize) = (1e-14, 10_000_000);
 
 /// Steps that reach an accuracy, and their cost.
 #[derive(Clone, Debug)]
-pub(crate) struct Accuracy {
+pub struct Accuracy {
     /// Number of steps.
     pub steps: usize,
     /// Number of steps of equal size or tolerance, if it was refined.
@@ -39,7 +39,7 @@ pub(crate) struct Accuracy {
 
 impl Accuracy {
     /// The changes of the problem file that give these steps, as path=value.
-    pub(crate) fn overrides(&self) -> Vec<String> {
+    pub fn overrides(&self) -> Vec<String> {
         let mut all = match self.spacing {
             Some(Spacing::Tolerance(tolerance)) => {
                 vec![format!("/simulation/tolerance={tolerance:e}")]
@@ -53,7 +53,7 @@ impl Accuracy {
     }
 
     /// The reached accuracy and the requested one; `of` names the functions.
-    pub(crate) fn describe(&self, asked: f64, of: &str) -> String {
+    pub fn describe(&self, asked: f64, of: &str) -> String {
         let missed = match self.error <= asked {
             true => "",
             false => ", which is all that can be reached",
@@ -78,7 +78,7 @@ impl Accuracy {
 
 /// A function whose error is judged, and a size that counts if the function is smaller.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub(crate) struct Judged {
+pub struct Judged {
     /// The function, by index.
     pub function: usize,
     /// The largest finite bound of a constraint; 0 for an objective.
@@ -87,7 +87,7 @@ pub(crate) struct Judged {
 
 impl Judged {
     /// A function relative to itself.
-    pub(crate) fn alone(function: usize) -> Self {
+    pub fn alone(function: usize) -> Self {
         let bound = 0.0;
         Self { function, bound }
     }
@@ -104,7 +104,7 @@ impl Judged {
 
 /// What an accuracy looks at, and its name: the objective, or the constraints that depend on the motion if the objective
 /// does not.
-pub(crate) fn judged(problem: &Problem, objective: usize) -> (Vec<Judged>, &'static str) {
+pub fn judged(problem: &Problem, objective: usize) -> (Vec<Judged>, &'static str) {
     let functions = problem.scene(&problem.start()).functions;
     let moves = |f: usize| !matches!(functions[f], Function::OfDesign { .. });
     let constraints = problem.constraints.iter().filter(|c| moves(c.function));
@@ -133,7 +133,7 @@ fn indices(which: &[Judged]) -> Vec<usize> {
 ///
 /// # Errors
 /// If a simulation fails.
-pub(crate) fn reach(
+pub fn reach(
     problem: &mut Problem,
     which: &[Judged],
     accuracy: f64,
@@ -216,7 +216,7 @@ fn reach_steps(
 
 /// Makes reduced bases richer until their errors against all nodes are below `accuracy`, relative to the functions; the
 /// largest error, and whether bases were changed. Takes all nodes if no basis does. The steps are those of the problem.
-pub(crate) fn reach_bases(
+pub fn reach_bases(
     problem: &mut Problem,
     which: &[Judged],
     accuracy: f64,

@@ -17,7 +17,7 @@ use crate::report::with_space;
 use crate::structures::functions::{self, Peak};
 
 /// A design that was analysed.
-pub(crate) enum Analysed {
+pub enum Analysed {
     /// A scene in motion.
     Motion(Box<Evaluated>),
     /// Structures that do not move.
@@ -26,7 +26,7 @@ pub(crate) enum Analysed {
 
 /// Why a design has no values or no gradients.
 #[derive(Clone, Debug, PartialEq, thiserror::Error)]
-pub(crate) enum AnalysisFailure {
+pub enum AnalysisFailure {
     /// The motion.
     #[error(transparent)]
     Motion(#[from] IntegrationFailure),
@@ -44,7 +44,7 @@ impl Analysed {
     ///
     /// # Errors
     /// If the analysis fails.
-    pub(crate) fn with(
+    pub fn with(
         integration: &mut Integration,
         problem: &Problem,
         x: &[f64],
@@ -63,7 +63,7 @@ impl Analysed {
     }
 
     /// The design.
-    pub(crate) fn x(&self) -> &[f64] {
+    pub fn x(&self) -> &[f64] {
         match self {
             Self::Motion(at) => &at.x,
             Self::Statics(at) => &at.x,
@@ -71,7 +71,7 @@ impl Analysed {
     }
 
     /// The value of a function.
-    pub(crate) fn value(&self, f: usize) -> f64 {
+    pub fn value(&self, f: usize) -> f64 {
         match self {
             Self::Motion(at) => at.function(f).value,
             Self::Statics(at) => at.function(f).value,
@@ -79,7 +79,7 @@ impl Analysed {
     }
 
     /// The work of the analysis.
-    pub(crate) fn counts(&self) -> WorkCounts {
+    pub fn counts(&self) -> WorkCounts {
         match self {
             Self::Motion(at) => at.run.counts,
             Self::Statics(at) => at.counts,
@@ -90,7 +90,7 @@ impl Analysed {
     ///
     /// # Errors
     /// If a function has no gradient there.
-    pub(crate) fn gradients(
+    pub fn gradients(
         &self,
         problem: &Problem,
         which: &[usize],
@@ -165,7 +165,7 @@ impl Analysed {
 }
 
 /// A design with the data of its record and figures.
-pub(crate) enum Simulated {
+pub enum Simulated {
     /// A motion with its observations.
     Motion(Box<Simulation>),
     /// Structures with all load cases.
@@ -177,7 +177,7 @@ impl Simulated {
     ///
     /// # Errors
     /// If the analysis fails.
-    pub(crate) fn of(problem: &Problem, x: &[f64]) -> Result<Self, AnalysisFailure> {
+    pub fn of(problem: &Problem, x: &[f64]) -> Result<Self, AnalysisFailure> {
         Ok(match &problem.statics {
             Some(statics) => Self::Statics(Box::new(StaticDesign::of(problem, statics, x, None)?)),
             None => Self::Motion(Box::new(simulate(problem, x)?)),
@@ -188,7 +188,7 @@ impl Simulated {
     ///
     /// # Errors
     /// If the analysis fails.
-    pub(crate) fn of_statics(
+    pub fn of_statics(
         problem: &Problem,
         x: &[f64],
     ) -> Result<Option<StaticDesign>, AnalysisFailure> {
@@ -202,7 +202,7 @@ impl Simulated {
     ///
     /// # Errors
     /// If the analysis fails.
-    pub(crate) fn with(
+    pub fn with(
         integration: &mut Integration,
         problem: &Problem,
         x: &[f64],
@@ -217,7 +217,7 @@ impl Simulated {
     }
 
     /// The value of a function.
-    pub(crate) fn value(&self, f: usize) -> f64 {
+    pub fn value(&self, f: usize) -> f64 {
         match self {
             Self::Motion(simulation) => simulation.at.function(f).value,
             Self::Statics(at) => at.function(f).value,
@@ -225,7 +225,7 @@ impl Simulated {
     }
 
     /// The largest value of the quantity that a function aggregates.
-    pub(crate) fn maximum(&self, f: usize) -> Option<f64> {
+    pub fn maximum(&self, f: usize) -> Option<f64> {
         match self {
             Self::Motion(simulation) => simulation.at.function(f).maximum.map(|m| m.value),
             Self::Statics(at) => at.function(f).peak.map(|peak| peak.ratio),
@@ -233,7 +233,7 @@ impl Simulated {
     }
 
     /// What a function stands for, if something in it is smoothed.
-    pub(crate) fn smoothed(&self, f: usize) -> Option<Smoothed> {
+    pub fn smoothed(&self, f: usize) -> Option<Smoothed> {
         match self {
             Self::Motion(simulation) => simulation.at.smoothed(f),
             Self::Statics(at) => at.smoothed(f),
@@ -270,7 +270,7 @@ impl Simulated {
     ///
     /// # Errors
     /// If the finer analysis fails.
-    pub(crate) fn estimate(
+    pub fn estimate(
         &self,
         problem: &Problem,
         which: &[usize],
@@ -379,7 +379,7 @@ impl Simulated {
 ///
 /// # Errors
 /// If the analysis fails.
-pub(crate) fn check(
+pub fn check(
     problem: &Problem,
     x: &[f64],
 ) -> Result<Vec<super::CheckedDerivative>, AnalysisFailure> {
@@ -390,7 +390,7 @@ pub(crate) fn check(
 }
 
 /// Where a stress is largest, in words.
-pub(crate) fn place(cases: &[String], peak: &Peak) -> String {
+pub fn place(cases: &[String], peak: &Peak) -> String {
     format!(
         "shell {}, Gauss point {}, {} face, load case \"{}\"",
         peak.shell,

@@ -12,7 +12,7 @@ use crate::problem::Problem;
 
 /// A function with another basis.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub(crate) struct BasisError {
+pub struct BasisError {
     /// The function, by index.
     pub function: usize,
     /// Its value.
@@ -25,7 +25,7 @@ pub(crate) struct BasisError {
 
 impl BasisError {
     /// The error, absolute, if the other basis is exact.
-    pub(crate) fn error(&self) -> f64 {
+    pub fn error(&self) -> f64 {
         (self.value - self.other).abs()
     }
 }
@@ -34,7 +34,7 @@ impl BasisError {
 ///
 /// # Errors
 /// If this simulation fails.
-pub(crate) fn errors(
+pub fn errors(
     problem: &Problem,
     at: &Evaluated,
     which: &[usize],
@@ -49,7 +49,7 @@ pub(crate) fn errors(
 ///
 /// # Errors
 /// If the simulation with richer bases fails.
-pub(crate) fn changes(
+pub fn changes(
     problem: &Problem,
     at: &Evaluated,
     which: &[usize],
@@ -84,11 +84,7 @@ fn compare(
 ///
 /// # Errors
 /// If the simulation fails.
-pub(crate) fn run(
-    problem: &Problem,
-    x: &[f64],
-    which: &[usize],
-) -> Result<Evaluated, IntegrationFailure> {
+pub fn run(problem: &Problem, x: &[f64], which: &[usize]) -> Result<Evaluated, IntegrationFailure> {
     let scene = problem.scene(x);
     let mut integration = Integration::new(problem, &scene, Some(which), false);
     let (at, _) = Evaluated::with(&mut integration, problem, x)?;

@@ -25,9 +25,9 @@ use crate::report::optimum::{
 };
 
 /// Largest accepted difference relative to Σ |gᵢdᵢ|: that of `optimize check`.
-pub(crate) const TOLERANCE: f64 = 1e-10;
+pub const TOLERANCE: f64 = 1e-10;
 /// Seed of the direction.
-pub(crate) const SEED: u64 = 20_221_113;
+pub const SEED: u64 = 20_221_113;
 /// Round-off of a derivative, relative to the terms that it is the sum of.
 const ROUND_OFF: f64 = 64.0 * f64::EPSILON;
 /// Largest number of variables that are tested one by one for the error, by a complex run each.
@@ -35,11 +35,7 @@ const LOOKED_AT: usize = 64;
 
 /// Certifies the gradients at both ends of an optimisation, on the steps of their simulations.
 /// Differences up to `tolerance` pass.
-pub(crate) fn certify(
-    problem: &Problem,
-    done: &Optimisation,
-    tolerance: f64,
-) -> GradientCertificate {
+pub fn certify(problem: &Problem, done: &Optimisation, tolerance: f64) -> GradientCertificate {
     let direction = direction(problem, SEED);
     let mut cost = CertificateCost::default();
     let mut sizes = vec![0.0; problem.function_names.len()];
@@ -348,8 +344,8 @@ fn not_finite(problem: &Problem, at: &Evaluated, gradient: &[Derivative]) -> Str
 #[cfg(test)]
 mod tests {
     use super::*;
-
-    use crate::tests::reference::documents::optimised;
+    use crate::{KnownEvaluations, optimise};
+    use std::ops::ControlFlow;
 
     #[test]
     fn a_difference_is_judged_beside_the_gradient_and_its_round_off() {
@@ -386,7 +382,9 @@ mod tests {
             "objective": {"minimise": "angle"}}"#;
         let problem = Problem::parse(text, "swing.json", &[]);
         let problem = problem.unwrap_or_else(|faults| panic!("{faults}"));
-        let done = optimised(&problem);
+        let mut progress = |_: &_| ControlFlow::Continue(());
+        let known = KnownEvaluations::default();
+        let done = optimise(&problem, "", None, known, &mut progress).expect("has an objective");
         let found = certify(&problem, &done, 1e-12);
         assert!(found.passed && found.faults().is_empty(), "{found:?}");
         let cost = CertificateCost {

@@ -24,7 +24,7 @@ const PARTS: [f64; 5] = [0.0625, 0.125, 0.25, 0.5, 1.0];
 
 /// A chaotic motion.
 #[derive(Clone, Debug, PartialEq)]
-pub(crate) struct Chaos {
+pub struct Chaos {
     /// Time from which on derivatives are meaningless \[s\].
     pub from: f64,
     /// Duration of the motion \[s\].
@@ -49,7 +49,7 @@ impl std::fmt::Display for Chaos {
 
 /// Whether the motion of the design `x` is chaotic, judged by all functions. `None` also if it
 /// cannot be simulated.
-pub(crate) fn chaos(problem: &Problem, x: &[f64]) -> Option<Chaos> {
+pub fn chaos(problem: &Problem, x: &[f64]) -> Option<Chaos> {
     let scene = problem.scene(x);
     let which: Vec<usize> = (0..scene.functions.len()).collect();
     let mut integration = Integration::new(problem, &scene, Some(&which), true);
@@ -58,7 +58,7 @@ pub(crate) fn chaos(problem: &Problem, x: &[f64]) -> Option<Chaos> {
 }
 
 /// As [`chaos`], of a design that was simulated, judged by the functions `which`.
-pub(crate) fn of_motion(problem: &Problem, at: &Evaluated, which: &[usize]) -> Option<Chaos> {
+pub fn of_motion(problem: &Problem, at: &Evaluated, which: &[usize]) -> Option<Chaos> {
     if at.x.is_empty() || which.is_empty() {
         return None;
     }

@@ -83,10 +83,7 @@ fn relative(x: f64, exact: f64) -> f64 {
 ///
 /// # Errors
 /// If a simulation fails.
-pub(crate) fn check(
-    problem: &Problem,
-    x: &[f64],
-) -> Result<Vec<CheckedDerivative>, IntegrationFailure> {
+pub fn check(problem: &Problem, x: &[f64]) -> Result<Vec<CheckedDerivative>, IntegrationFailure> {
     let scene = problem.scene(x);
     let which: Vec<usize> = (0..scene.functions.len()).collect();
     let mut integration = Integration::new(problem, &scene, Some(&which), true);

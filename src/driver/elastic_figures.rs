@@ -90,7 +90,7 @@ pub(super) fn displaced(point: &Vec3<f64>, modes: &[Vec3<f64>], q: &[f64]) -> Ve
 }
 
 /// The displacements of points of flexible bodies against time.
-pub(crate) fn deflections(title: &str, simulation: &Simulation, drawing: &Drawing) -> Curves {
+pub fn deflections(title: &str, simulation: &Simulation, drawing: &Drawing) -> Curves {
     let (model, run) = (&simulation.written.model, simulation.motion());
     let mut curves: Vec<(String, Vec<f64>)> = (drawing.elastic_points.iter())
         .map(|point| (point.name.clone(), Vec::new()))
@@ -145,7 +145,7 @@ pub(super) fn leave_out_small(designs: &mut [Curves]) {
 
 /// The largest stress of each body whose stresses are known against time \[Pa\]: von Mises stress of shells at
 /// their Gauss points, size of the stress along all outer fibres of beams. A body of shells and beams has both.
-pub(crate) fn stresses(title: &str, simulation: &Simulation, drawing: &Drawing) -> Curves {
+pub fn stresses(title: &str, simulation: &Simulation, drawing: &Drawing) -> Curves {
     let (model, run) = (&simulation.written.model, simulation.motion());
     let mut curves = Vec::new();
     for (body, rigid) in model.bodies.iter().enumerate() {
@@ -201,7 +201,7 @@ pub(super) fn colours(
 }
 
 /// The limits that constraints put on stresses of bodies \[Pa\]: one for each value, with all whose limit it is.
-pub(crate) fn limits(problem: &Problem, simulation: &Simulation) -> Vec<Limit> {
+pub fn limits(problem: &Problem, simulation: &Simulation) -> Vec<Limit> {
     let scene = &simulation.at.scene;
     let model = &scene.model;
     let limit = |function: &Function<f64>, upper: f64| {

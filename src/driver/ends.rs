@@ -7,14 +7,14 @@ use super::statics::StaticDesign;
 
 /// Designs with their titles, such as `optimal design`: those in motion, and structures at rest.
 #[derive(Default)]
-pub(crate) struct Ends<'a> {
+pub struct Ends<'a> {
     pub motions: Vec<(&'a str, &'a Simulation)>,
     pub structures: Vec<(&'a str, &'a StaticDesign)>,
 }
 
 impl<'a> Ends<'a> {
     /// The start and the end of an optimisation, as far as they could be simulated.
-    pub(crate) fn new(start: Option<&'a Simulated>, end: Option<&'a Simulated>) -> Self {
+    pub fn new(start: Option<&'a Simulated>, end: Option<&'a Simulated>) -> Self {
         let mut all = Self::default();
         for (title, end) in [("initial design", start), ("optimal design", end)] {
             match end {
@@ -27,12 +27,12 @@ impl<'a> Ends<'a> {
     }
 
     /// The ends of an optimisation.
-    pub(crate) fn of_optimisation(done: &'a Optimisation) -> Self {
+    pub fn of_optimisation(done: &'a Optimisation) -> Self {
         Self::new(done.start.as_ref(), done.end.as_ref())
     }
 
     /// A motion alone.
-    pub(crate) fn of_motion(own: &'a Simulation) -> Self {
+    pub fn of_motion(own: &'a Simulation) -> Self {
         Self {
             motions: vec![("", own)],
             structures: Vec::new(),
@@ -40,7 +40,7 @@ impl<'a> Ends<'a> {
     }
 
     /// A structure alone.
-    pub(crate) fn of_structure(own: &'a StaticDesign) -> Self {
+    pub fn of_structure(own: &'a StaticDesign) -> Self {
         Self {
             motions: Vec::new(),
             structures: vec![("", own)],

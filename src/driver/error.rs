@@ -28,7 +28,7 @@ use crate::problem::Problem;
 
 /// A number with its estimated error.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub(crate) struct Estimate {
+pub struct Estimate {
     /// The number on the steps in use.
     pub value: f64,
     /// Its estimated error, absolute.
@@ -41,7 +41,7 @@ pub(crate) struct Estimate {
 
 /// A function's value and, if requested, its gradient in the design variables.
 #[derive(Clone, Debug, PartialEq)]
-pub(crate) struct FunctionError {
+pub struct FunctionError {
     /// The function, by index.
     pub function: usize,
     /// Its value.
@@ -57,7 +57,7 @@ pub(crate) struct FunctionError {
 ///
 /// # Errors
 /// If the finer simulation or a gradient fails.
-pub(crate) fn estimate(
+pub fn estimate(
     problem: &Problem,
     at: &Evaluated,
     which: &[usize],

@@ -21,7 +21,7 @@ const ZERO: f64 = 64.0 * f64::EPSILON;
 const ALMOST_ZERO: f64 = 1e-6;
 
 /// A design that was simulated.
-pub(crate) struct Evaluated {
+pub struct Evaluated {
     /// The design.
     pub x: Vec<f64>,
     /// The scene there.
@@ -43,7 +43,6 @@ impl Evaluated {
     ///
     /// # Errors
     /// If the simulation fails.
-    #[cfg(test)]
     pub fn new(problem: &Problem, x: &[f64]) -> Result<Self, IntegrationFailure> {
         let mut integration = Integration::new(problem, &problem.scene(x), None, true);
         Ok(Self::with(&mut integration, problem, x)?.0)
@@ -53,7 +52,7 @@ impl Evaluated {
     ///
     /// # Errors
     /// If the simulation fails.
-    pub(crate) fn with(
+    pub fn with(
         integration: &mut Integration,
         problem: &Problem,
         x: &[f64],
@@ -89,7 +88,7 @@ impl Evaluated {
 
     /// The scene as it is written, and the motion of all its bodies. Bodies that no function
     /// observes are simulated for it; if that fails, they rest.
-    pub(crate) fn written(&self, problem: &Problem) -> (Scene<f64>, Cow<'_, Trajectory<f64>>) {
+    pub fn written(&self, problem: &Problem) -> (Scene<f64>, Cow<'_, Trajectory<f64>>) {
         if let Some(whole) = problem.whole() {
             let (scene, run) = self.whole(problem, &whole);
             return (scene, Cow::Owned(run));
@@ -139,7 +138,7 @@ impl Evaluated {
     }
 
     /// Why function f has no derivative by the design here, if so.
-    pub(crate) fn no_derivative(&self, problem: &Problem, f: usize) -> Option<String> {
+    pub fn no_derivative(&self, problem: &Problem, f: usize) -> Option<String> {
         self.vanishes(problem, f, ZERO)
     }
 
@@ -157,11 +156,7 @@ impl Evaluated {
 
     /// Warnings of the functions `which`: of a speed that passes through its kink at rest, of a norm that is
     /// zero, and of a peak that the samples do not resolve.
-    pub(crate) fn doubts(
-        &self,
-        problem: &Problem,
-        which: impl Iterator<Item = usize>,
-    ) -> Vec<String> {
+    pub fn doubts(&self, problem: &Problem, which: impl Iterator<Item = usize>) -> Vec<String> {
         let doubts = |f: usize| {
             let name = &problem.function_names[f];
             let rests = passes_rest(&self.scene.functions[f], &self.scene.model, &self.run);
@@ -186,12 +181,12 @@ impl Evaluated {
     }
 
     /// A function of interest, by index.
-    pub(crate) fn function(&self, index: usize) -> evaluate::Evaluated<f64> {
+    pub fn function(&self, index: usize) -> evaluate::Evaluated<f64> {
         self.scene.functions[index].evaluate(&self.scene.model, &self.run)
     }
 
     /// What a function of interest stands for, if something in it is smoothed.
-    pub(crate) fn smoothed(&self, index: usize) -> Option<Smoothed> {
+    pub fn smoothed(&self, index: usize) -> Option<Smoothed> {
         let function = &self.scene.functions[index];
         let found = self.function(index);
         smoothed::of_motion(function, &self.scene.model, &self.run, &found)
@@ -201,7 +196,7 @@ impl Evaluated {
     ///
     /// # Errors
     /// If a step's equations are singular.
-    pub(crate) fn gradients(
+    pub fn gradients(
         &self,
         problem: &Problem,
         which: &[usize],
@@ -215,7 +210,7 @@ impl Evaluated {
     ///
     /// # Errors
     /// If a step's equations are singular.
-    pub(crate) fn derivatives(
+    pub fn derivatives(
         &self,
         problem: &Problem,
         which: &[usize],
@@ -290,7 +285,7 @@ fn along_event(function: &Scene<f64>, event: &Scene<f64>) -> (Scene<f64>, Scene<
 
 /// A derivative in a variable: the sum over the parameters of the scene that it moves.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
-pub(crate) struct Derivative {
+pub struct Derivative {
     /// The sum.
     pub value: f64,
     /// The sum of the sizes of the terms; its last digits are round-off.

@@ -13,7 +13,7 @@ use std::rc::Rc;
 
 /// The steps of an evaluation.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub(crate) struct JudgedOn {
+pub struct JudgedOn {
     /// Number of steps.
     pub steps: Option<usize>,
     /// How often they had been chosen anew.
@@ -22,11 +22,11 @@ pub(crate) struct JudgedOn {
 
 /// The steps of every evaluated design, keyed by its exact bits; shared with the observer of the
 /// run.
-pub(crate) type Judgements = Rc<RefCell<HashMap<Vec<u64>, JudgedOn>>>;
+pub type Judgements = Rc<RefCell<HashMap<Vec<u64>, JudgedOn>>>;
 
 /// The problem as a nonlinear program. It keeps the last simulated design, so a gradient at the
 /// point just evaluated costs the backward march only.
-pub(crate) struct Evaluator<'a> {
+pub struct Evaluator<'a> {
     problem: &'a Problem,
     objective: usize,
     sign: f64,
@@ -53,7 +53,7 @@ pub(crate) struct Evaluator<'a> {
 
 impl<'a> Evaluator<'a> {
     /// The program that `problem` states, or `None` if it has no objective.
-    pub(crate) fn new(problem: &'a Problem, log: KnownEvaluations<'a>) -> Option<Self> {
+    pub fn new(problem: &'a Problem, log: KnownEvaluations<'a>) -> Option<Self> {
         let objective = problem.objective?;
         let sign = match objective.sense {
             Sense::Minimise => 1.0,
@@ -80,7 +80,7 @@ impl<'a> Evaluator<'a> {
     }
 
     /// +1 if the objective is minimised, −1 if it is maximised.
-    pub(crate) fn sign(&self) -> f64 {
+    pub fn sign(&self) -> f64 {
         self.sign
     }
 
@@ -90,7 +90,7 @@ impl<'a> Evaluator<'a> {
     }
 
     /// Work of all simulations and gradients so far, including those that the log knew.
-    pub(crate) fn counts(&self) -> Work {
+    pub fn counts(&self) -> Work {
         self.log.work()
     }
 
@@ -113,7 +113,7 @@ impl<'a> Evaluator<'a> {
 
     /// Computes the gradients at `points` side by side, if they will be requested. `x` is scaled as
     /// in the optimiser.
-    pub(crate) fn foresee_gradients(&mut self, points: &[Vec<f64>]) {
+    pub fn foresee_gradients(&mut self, points: &[Vec<f64>]) {
         let functions = self.functions();
         let designs = self.unknown(points, true);
         let wanted = (&designs[..], &functions[..]);
@@ -347,7 +347,7 @@ impl Nlp for Evaluator<'_> {
 }
 
 /// A design in the problem's units from the optimiser's, x = scale · x̂.
-pub(crate) fn unscaled(problem: &Problem, x: &[f64]) -> Vec<f64> {
+pub fn unscaled(problem: &Problem, x: &[f64]) -> Vec<f64> {
     // A scaled bound returns as the bound itself, without round-off.
     let clamp = |x: f64, v: &crate::problem::Variable| (x * v.scale).clamp(v.lower, v.upper);
     x.iter()

@@ -39,7 +39,7 @@ const LONGEST: f64 = 0.2;
 
 /// The events that end a run.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub(crate) enum Admit {
+pub enum Admit {
     /// Also those a little after the scene's duration.
     Late,
     /// Those within it.
@@ -57,7 +57,7 @@ pub(crate) enum Admit {
 ///
 /// # Errors
 /// [`IntegrationFailure::NotReached`], or [`IntegrationFailure::Touches`].
-pub(crate) fn first(
+pub fn first(
     until: &TerminalEvent<f64>,
     run: &Trajectory<f64>,
     gaps: &[f64],
@@ -88,7 +88,7 @@ pub(crate) fn first(
 ///
 /// # Errors
 /// As of [`first`], or the failure of the motion.
-pub(crate) fn sought(
+pub fn sought(
     scene: &Scene<f64>,
     until: &TerminalEvent<f64>,
     waited: f64,
@@ -129,7 +129,7 @@ fn side(gaps: &[f64], noise: f64) -> f64 {
 ///
 /// # Errors
 /// [`IntegrationFailure::Touches`].
-pub(crate) fn refuse_touch(
+pub fn refuse_touch(
     scene: &Scene<f64>,
     run: &Trajectory<f64>,
     rate: f64,
@@ -153,7 +153,7 @@ pub(crate) fn refuse_touch(
 ///
 /// # Errors
 /// If a run fails, or the event is not found, or not admitted.
-pub(crate) fn settle(
+pub fn settle(
     scene: &mut Scene<f64>,
     settings: &Settings,
     guess: f64,
@@ -247,7 +247,7 @@ fn touches(gaps: &[f64], run: &Trajectory<f64>, waited: f64) -> bool {
 ///
 /// # Errors
 /// If the run fails.
-pub(crate) fn rate(
+pub fn rate(
     scene: &Scene<f64>,
     settings: &Settings,
     duration: f64,
@@ -266,7 +266,7 @@ pub(crate) fn rate(
 ///
 /// # Errors
 /// If the run fails.
-pub(crate) fn complex_duration(
+pub fn complex_duration(
     scene: &Scene<Complex64>,
     settings: &Settings,
     (duration, rate): (f64, f64),

@@ -10,7 +10,7 @@ use crate::integrate::{IntegrationFailure, LinearSolver, Method, Trajectory};
 use crate::model::{Mobility, Model};
 use crate::problem::Problem;
 use crate::report::{Explanation, FunctionUse, IntegrationUse, LinearUse, SystemSize};
-use crate::system::accelerations::{Accelerations, FallbackReason};
+use crate::system::accelerations::{self, FallbackReason};
 use crate::system::left_out::listed;
 use crate::system::{Numbering, placement};
 
@@ -129,7 +129,7 @@ fn linear(at: &Evaluated) -> Option<LinearUse> {
 /// that an optimisation leaves out because neither objective nor constraint observes them (no
 /// function, if there is no objective) are left out here too. Of a long motion only the first
 /// stretch is simulated.
-pub(crate) fn explain(problem: &Problem) -> Explanation {
+pub fn explain(problem: &Problem) -> Explanation {
     let all: Vec<usize> = (0..problem.function_names.len()).collect();
     let focused = match problem.objective {
         Some(_) => problem.for_optimisation(),
@@ -372,7 +372,7 @@ fn rows_left_out(written: &Model<f64>, lowered: &Model<f64>) -> Vec<String> {
 
 /// The warning that the discretisation error of merged bodies differs from that of their parts, if
 /// an implicit method marches some.
-pub(crate) fn merged_errs(problem: &Problem, at: &Evaluated) -> Option<&'static str> {
+pub fn merged_errs(problem: &Problem, at: &Evaluated) -> Option<&'static str> {
     let lowering = problem.lowering.as_ref();
     let merged = lowering.is_some_and(|lowering| !lowering.welded.is_empty());
     (merged && at.run.method != Method::Dop853).then_some(
@@ -407,10 +407,8 @@ fn told(model: &Model<f64>, why: FallbackReason) -> String {
 /// Size of the equations of a model in a state.
 fn size(model: &Model<f64>, (q, v): (Vec<f64>, Vec<f64>)) -> SystemSize {
     let numbering = Numbering::new(model);
-    let mut field = Accelerations::new(model, &numbering);
-    field.set_state(&q, &v, 0.0);
-    let elimination = field.factorise().ok().map(|()| field.elimination());
-    let sparse = field.left_to_sparse().map(|why| told(model, why));
+    let (elimination, sparse) = accelerations::elimination(model, &numbering, &q, &v);
+    let sparse = sparse.map(|why| told(model, why));
     let named = |bodies: Vec<usize>| {
         let name = |body: usize| model.bodies[body].name.clone();
         bodies.into_iter().map(name).collect()

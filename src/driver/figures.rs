@@ -24,15 +24,15 @@ use crate::report::plots::{
 };
 
 /// A file's name and content.
-pub(crate) type NamedFile = (&'static str, Vec<u8>);
+pub type NamedFile = (&'static str, Vec<u8>);
 
 /// Figures of an optimisation. Empty ones are left out.
-pub(crate) fn of_optimisation(problem: &Problem, done: &Optimisation) -> Vec<NamedFile> {
+pub fn of_optimisation(problem: &Problem, done: &Optimisation) -> Vec<NamedFile> {
     of_ends(problem, &Ends::of_optimisation(done), &done.history)
 }
 
 /// Figures of the two ends of an optimisation.
-pub(crate) fn of_ends(problem: &Problem, ends: &Ends, history: &History) -> Vec<NamedFile> {
+pub fn of_ends(problem: &Problem, ends: &Ends, history: &History) -> Vec<NamedFile> {
     match problem.statics {
         Some(_) => of_structures::figures(problem, &ends.structures, Some(history)),
         None => figures(problem, &ends.motions, Some(history)),
@@ -40,7 +40,7 @@ pub(crate) fn of_ends(problem: &Problem, ends: &Ends, history: &History) -> Vec<
 }
 
 /// Figures of a simulation.
-pub(crate) fn of_simulation(problem: &Problem, simulation: &Simulation) -> Vec<NamedFile> {
+pub fn of_simulation(problem: &Problem, simulation: &Simulation) -> Vec<NamedFile> {
     figures(problem, &[("", simulation)], None)
 }
 
@@ -114,9 +114,16 @@ fn figures(
 }
 
 fn scenery(drawing: &Drawing) -> Scenery {
+    // An oblique view shows a sum of coordinates.
     let label = |axis: &Vec3<f64>| {
-        let name = ["x", "y", "z"][axis.iamax()];
-        format!("{name} [m]")
+        const NAMES: [&str; 3] = ["x", "y", "z"];
+        let main = axis.iamax();
+        let others = (0..3).filter(|&i| i != main && axis[i] != 0.0);
+        let other = |i: usize| {
+            let sign = if axis[i] < 0.0 { "−" } else { "+" };
+            format!(" {sign} {} {}", axis[i].abs(), NAMES[i])
+        };
+        format!("{}{} [m]", NAMES[main], others.map(other).collect::<String>())
     };
     Scenery {
         ground: drawing.ground,

@@ -2,9 +2,10 @@
 //! [`crate::structures::turned`]), beams near lateral buckling whose twist and bending do not couple, large strains,
 //! bodies of linear strain that spin fast, inertia that depends on the observer, and reduced bases that lock.
 
-use crate::integrate::{IntegrationFailure, Trajectory};
+use crate::integrate::{IntegrationFailure, Spacing, Trajectory};
 use crate::model::flexible::{Modes, carriers};
 use crate::model::{FlexibleBody, Form, Inertia, JointKind, Model};
+use crate::problem::Problem;
 use crate::structures::modal::ModalNumbers;
 use crate::structures::modal::frequencies::{Held, frequencies};
 use crate::structures::turned::{LARGE_ERROR, Turned};
@@ -31,6 +32,29 @@ const LOOKS: usize = 8;
 /// Part of the lowest angular frequency above which a body of linear strain spins fast. A beam that turns with Ω
 /// gains a stiffness of about Ω²/ω² of its own by the tension, which linear strain does not have.
 const FAST: f64 = 0.1;
+
+/// Number of steps by a tolerance above which what sets them is told.
+const MANY_STEPS: usize = 2000;
+
+/// Advice where a tolerance makes a motion of elastic bodies follow fast vibrations in many steps.
+pub(super) fn many_steps(
+    problem: &Problem,
+    model: &Model<f64>,
+    run: &Trajectory<f64>,
+) -> Option<String> {
+    let Spacing::Tolerance(tolerance) = problem.simulation.spacing else {
+        return None;
+    };
+    let steps = run.grid.steps();
+    if model.flexible.is_empty() || steps < MANY_STEPS {
+        return None;
+    }
+    let looser = 100.0 * tolerance;
+    Some(format!(
+        "{steps} steps follow the vibrations of elastic bodies to the tolerance {tolerance:e}. If slow motion is wanted, a \
+         looser tolerance takes fewer; see what changes with --set /simulation/tolerance={looser:e} --error"
+    ))
+}
 
 /// A warning about a motion that flexible bodies do not follow accurately.
 pub(super) fn warning(model: &Model<f64>, run: &Trajectory<f64>) -> Option<String> {

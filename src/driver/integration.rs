@@ -33,11 +33,11 @@ const MOST_LATE: f64 = 0.05;
 const PASSED: &str = "the end of the motion has passed an instant of a table";
 
 /// Reason of the first choice of steps.
-pub(crate) const FIRST_DESIGN: &str = "first design";
+pub const FIRST_DESIGN: &str = "first design";
 
 /// The method and the steps that are in use.
 #[derive(Clone, Debug)]
-pub(crate) struct Integration {
+pub struct Integration {
     method: Option<Method>,
     solver: LinearSolver,
     spacing: Spacing,
@@ -64,7 +64,7 @@ pub(crate) struct Integration {
 }
 
 /// Method and steps of an earlier choice.
-pub(crate) struct KeptSteps {
+pub struct KeptSteps {
     /// The method.
     pub method: Method,
     /// Why, if it is not used for its usual purpose.
@@ -77,7 +77,7 @@ pub(crate) struct KeptSteps {
 
 /// A change of the steps in use.
 #[derive(Clone, Debug, PartialEq)]
-pub(crate) struct Refresh {
+pub struct Refresh {
     /// Name of the method.
     pub method: String,
     /// Why this method, if it is not used for its usual purpose.
@@ -92,7 +92,7 @@ impl Integration {
     /// The integration that `problem` requests. `asked` are the functions that will be requested,
     /// or `None` if the whole motion is needed in any case; `gradients` tells whether derivatives
     /// will be.
-    pub(crate) fn new(
+    pub fn new(
         problem: &Problem,
         scene: &Scene<f64>,
         asked: Option<&[usize]>,
@@ -146,7 +146,7 @@ impl Integration {
     }
 
     /// As [`Integration::new`] for the scene of the start. Structures are not integrated.
-    pub(crate) fn of(problem: &Problem, asked: Option<&[usize]>, gradients: bool) -> Self {
+    pub fn of(problem: &Problem, asked: Option<&[usize]>, gradients: bool) -> Self {
         if problem.statics.is_none() {
             return Self::new(problem, &problem.scene(&problem.start()), asked, gradients);
         }
@@ -175,7 +175,7 @@ impl Integration {
     }
 
     /// The settings in use and the reason for the method, after the first simulation.
-    pub(crate) fn chosen(&self) -> Option<(&Settings, &str)> {
+    pub fn chosen(&self) -> Option<(&Settings, &str)> {
         let (settings, reason) = self.chosen.as_ref()?;
         Some((settings, reason))
     }
@@ -201,7 +201,7 @@ impl Integration {
     }
 
     /// Number of steps of the motion, if known.
-    pub(crate) fn steps(&self) -> Option<usize> {
+    pub fn steps(&self) -> Option<usize> {
         let spacing = self.chosen.as_ref().map(|(settings, _)| &settings.spacing);
         match spacing.unwrap_or(&self.spacing) {
             Spacing::Steps(steps) => Some(*steps),
@@ -211,12 +211,12 @@ impl Integration {
     }
 
     /// Where the motion is sampled.
-    pub(crate) fn samples(&self) -> Samples {
+    pub fn samples(&self) -> Samples {
         self.samples
     }
 
     /// Samples the whole motion from now on, for figures. Functions of the end do not change.
-    pub(crate) fn see_whole(&mut self) {
+    pub fn see_whole(&mut self) {
         self.samples = match self.samples {
             Samples::Uniform(1) => Samples::Uniform(self.shown),
             Samples::Quadrature(0) => Samples::Quadrature(self.shown),
@@ -228,7 +228,7 @@ impl Integration {
     }
 
     /// Continues with an earlier choice of steps.
-    pub(crate) fn restore(&mut self, kept: KeptSteps) {
+    pub fn restore(&mut self, kept: KeptSteps) {
         self.refreshes = kept.refreshes;
         let mut settings = Settings {
             method: kept.method,
@@ -243,7 +243,7 @@ impl Integration {
     }
 
     /// A warning about the method in use for a scene whose steps it made.
-    pub(crate) fn warning(&self, scene: &Scene<f64>, run: &Trajectory<f64>) -> Option<String> {
+    pub fn warning(&self, scene: &Scene<f64>, run: &Trajectory<f64>) -> Option<String> {
         let widest = (1..=run.grid.steps()).map(|k| run.grid.width(k));
         let h = run.duration * widest.fold(0.0, f64::max);
         let of_method = choice::warning(&scene.model, run.method, h);
@@ -270,7 +270,7 @@ impl Integration {
     ///
     /// # Errors
     /// If the simulation fails, or a flexible body is turned inside out.
-    pub(crate) fn simulate(
+    pub fn simulate(
         &mut self,
         scene: &mut Scene<f64>,
     ) -> Result<(Trajectory<f64>, Option<Refresh>), IntegrationFailure> {

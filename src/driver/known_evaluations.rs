@@ -19,7 +19,7 @@ const SETTINGS: [&str; 5] = ["$schema", "name", "description", "optimiser", "plo
 /// iterations, multipliers and quasi-Newton matrices without a simulation, and then continues. No
 /// design is evaluated twice.
 #[derive(Default)]
-pub(crate) struct KnownEvaluations<'a> {
+pub struct KnownEvaluations<'a> {
     /// Keyed by whether they are gradients, and by the exact bits of the design.
     known: HashMap<(bool, Vec<u64>), Known>,
     /// How many evaluations there are.
@@ -50,7 +50,7 @@ struct Known {
 
 /// Additional data of an evaluation.
 #[derive(Default)]
-pub(crate) struct EvaluationContext {
+pub struct EvaluationContext {
     /// Before: time of the event at this design with the steps in use, if known \[s\].
     pub settled: Option<f64>,
     /// Before: whether another process simulated this design just before it ended. The extra
@@ -75,10 +75,7 @@ struct Choice {
 
 impl<'a> KnownEvaluations<'a> {
     /// A log that knows `earlier` and passes new evaluations to `record`.
-    pub(crate) fn new(
-        earlier: Vec<EvaluationRecord>,
-        record: impl FnMut(EvaluationRecord) + 'a,
-    ) -> Self {
+    pub fn new(earlier: Vec<EvaluationRecord>, record: impl FnMut(EvaluationRecord) + 'a) -> Self {
         let mut log = Self {
             record: Some(Box::new(record)),
             ..Self::default()
@@ -110,29 +107,29 @@ impl<'a> KnownEvaluations<'a> {
     }
 
     /// Index of the choice of steps in use, from 0, if there is one.
-    pub(crate) fn choice(&self) -> Option<usize> {
+    pub fn choice(&self) -> Option<usize> {
         self.in_use
     }
 
     /// Method and steps of the choice in use.
-    pub(crate) fn steps(&self) -> Option<KeptSteps> {
+    pub fn steps(&self) -> Option<KeptSteps> {
         let Choice { steps, refreshes } = &self.choices[self.in_use?];
         kept(steps, *refreshes)
     }
 
     /// The number of the latest requested evaluation of the record, and the time of the event in
     /// the last motion by then \[s\].
-    pub(crate) fn latest(&self) -> Option<(usize, Option<f64>)> {
+    pub fn latest(&self) -> Option<(usize, Option<f64>)> {
         self.latest
     }
 
     /// Whether values (or gradients) at a design are known.
-    pub(crate) fn knows(&self, of_gradients: bool, design: &[f64]) -> bool {
+    pub fn knows(&self, of_gradients: bool, design: &[f64]) -> bool {
         self.known.contains_key(&(of_gradients, bits(design)))
     }
 
     /// Work of all requested evaluations, including the known ones.
-    pub(crate) fn work(&self) -> Work {
+    pub fn work(&self) -> Work {
         self.work
     }
 
@@ -153,7 +150,7 @@ impl<'a> KnownEvaluations<'a> {
     }
 
     /// Values at a design: known, or computed by `evaluate` and recorded.
-    pub(crate) fn values(
+    pub fn values(
         &mut self,
         design: &[f64],
         evaluate: impl FnOnce(&mut EvaluationContext) -> Result<Vec<f64>, String>,
@@ -184,7 +181,7 @@ impl<'a> KnownEvaluations<'a> {
     }
 
     /// Gradients at a design, in the same way.
-    pub(crate) fn gradients(
+    pub fn gradients(
         &mut self,
         design: &[f64],
         evaluate: impl FnOnce(&mut EvaluationContext) -> Result<Vec<Vec<f64>>, String>,
@@ -345,7 +342,7 @@ fn rows_left_out(grid: &Grid) -> Vec<RowsLeftOut> {
 }
 
 /// The head of the record: the problem that the evaluations belong to.
-pub(crate) fn head(problem: &Problem) -> Head {
+pub fn head(problem: &Problem) -> Head {
     let objective = problem.objective.map(|o| o.function);
     let constraints = problem.constraints.iter().map(|c| c.function);
     let document = problem.document.as_object().cloned().unwrap_or_default();

@@ -11,7 +11,7 @@ const PART: usize = 2;
 const UNKNOWN: usize = 1 << 30;
 
 /// Memory limit of the tape of one motion \[bytes\], if `given` is for all concurrent motions.
-pub(crate) fn for_gradients(given: Option<usize>) -> usize {
+pub fn for_gradients(given: Option<usize>) -> usize {
     let all = given.unwrap_or_else(|| available_memory().map_or(UNKNOWN, |bytes| bytes / PART));
     (all / rayon::current_num_threads().max(1)).max(1)
 }

@@ -16,7 +16,7 @@ const SAME_DESIGN: f64 = 1e-3;
 const SAME_OBJECTIVE: f64 = 1e-6;
 
 /// One of several optimisations.
-pub(crate) struct Run {
+pub struct Run {
     /// The number of its start, from 0.
     pub start: usize,
     /// The problem with its start.
@@ -27,13 +27,13 @@ pub(crate) struct Run {
 
 impl Run {
     /// The design that it ended at, in the units of the problem file.
-    pub(crate) fn design(&self) -> Vec<f64> {
+    pub fn design(&self) -> Vec<f64> {
         unscaled(&self.problem, &self.solved.outcome.x)
     }
 }
 
 /// An optimum that at least one run found.
-pub(crate) struct LocalOptimum {
+pub struct LocalOptimum {
     /// The run with the best value there, and the first run that ended there.
     pub run: usize,
     pub first: usize,
@@ -46,7 +46,7 @@ pub(crate) struct LocalOptimum {
 ///
 /// # Errors
 /// The name of a variable without two bounds.
-pub(crate) fn starts(problem: &Problem, count: usize) -> Result<Vec<Vec<f64>>, String> {
+pub fn starts(problem: &Problem, count: usize) -> Result<Vec<Vec<f64>>, String> {
     let open = |v: &&Variable| !(v.lower.is_finite() && v.upper.is_finite());
     if count > 1
         && let Some(variable) = problem.variables.iter().find(open)
@@ -64,7 +64,7 @@ pub(crate) fn starts(problem: &Problem, count: usize) -> Result<Vec<Vec<f64>>, S
 }
 
 /// The problem with another start.
-pub(crate) fn started_at(problem: &Problem, start: &[f64]) -> Problem {
+pub fn started_at(problem: &Problem, start: &[f64]) -> Problem {
     let mut problem = problem.clone();
     problem.restart(start);
     problem
@@ -75,7 +75,7 @@ pub(crate) fn started_at(problem: &Problem, start: &[f64]) -> Problem {
 /// number and problem, or `None` if there can be none; the start is then left out. The time limit
 /// of the problem is that of all runs together. Starts that have not begun by then are left out,
 /// except the first.
-pub(crate) fn multi_start<'j>(
+pub fn multi_start<'j>(
     problem: &Problem,
     starts: &[Vec<f64>],
     stopped: &(dyn Fn() -> bool + Sync),
@@ -112,7 +112,7 @@ pub(crate) fn multi_start<'j>(
 }
 
 /// Distinct optima of the converged runs, best first.
-pub(crate) fn distinct(problem: &Problem, runs: &[Run]) -> Vec<LocalOptimum> {
+pub fn distinct(problem: &Problem, runs: &[Run]) -> Vec<LocalOptimum> {
     let size = improvement(runs);
     let worth = |run: usize| {
         let value = runs[run].solved.objective();
@@ -149,7 +149,7 @@ pub(crate) fn distinct(problem: &Problem, runs: &[Run]) -> Vec<LocalOptimum> {
 
 /// The run with the best design: of the converged ones, else of the feasible ones, else the one
 /// with the least violation.
-pub(crate) fn best(runs: &[Run]) -> Option<usize> {
+pub fn best(runs: &[Run]) -> Option<usize> {
     let rank = |run: &Run| {
         let violation = run.solved.outcome.kkt.violation;
         let value = run.solved.outcome.objective;

@@ -7,7 +7,7 @@ use crate::functions::{Function, Instant};
 use crate::problem::Problem;
 
 /// A function whose value is not finite, and the time from which on its data are not.
-pub(crate) fn value(problem: &Problem, at: &Evaluated, f: usize, value: f64) -> String {
+pub fn value(problem: &Problem, at: &Evaluated, f: usize, value: f64) -> String {
     let name = &problem.function_names[f];
     let own = match &at.scene.functions[f] {
         Function::Reduced { instant, .. } => {

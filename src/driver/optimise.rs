@@ -20,7 +20,7 @@ use std::time::Duration;
 const AFTER_INTERRUPT: Duration = Duration::from_millis(400);
 
 /// A finished optimisation before the simulations of its figures.
-pub(crate) struct Solved {
+pub struct Solved {
     /// The optimiser's outcome, in its scaled variables.
     pub outcome: Outcome,
     /// Every iteration.
@@ -35,7 +35,7 @@ pub(crate) struct Solved {
 }
 
 /// A finished optimisation.
-pub(crate) struct Optimisation {
+pub struct Optimisation {
     /// The optimiser's outcome, in its scaled variables.
     pub outcome: Outcome,
     /// The record of the end.
@@ -54,7 +54,7 @@ pub(crate) struct Optimisation {
 /// evaluations. `progress` gets the history after every iteration and may stop the run.
 ///
 /// Returns `None` if the problem has no objective or no variables.
-pub(crate) fn optimise<'a>(
+pub fn optimise<'a>(
     problem: &'a Problem,
     file: &str,
     from: Option<&SavedState>,
@@ -65,7 +65,7 @@ pub(crate) fn optimise<'a>(
 }
 
 /// As [`optimise`], without the simulations of its ends.
-pub(crate) fn solve<'a>(
+pub fn solve<'a>(
     problem: &'a Problem,
     from: Option<&SavedState>,
     log: KnownEvaluations<'a>,
@@ -132,12 +132,12 @@ fn options(problem: &Problem) -> Options {
 
 impl Solved {
     /// The objective in the user's sense.
-    pub(crate) fn objective(&self) -> f64 {
+    pub fn objective(&self) -> f64 {
         self.sign * self.outcome.objective
     }
 
     /// Simulates both ends and makes the record.
-    pub(crate) fn complete(self, problem: &Problem, file: &str) -> Optimisation {
+    pub fn complete(self, problem: &Problem, file: &str) -> Optimisation {
         let refreshes = self.integration.refreshes;
         problem.simulation.limits.allow(AFTER_INTERRUPT);
         // With the steps of its values.

@@ -3,6 +3,7 @@
 use super::connectors::{Joined, joined};
 use super::elastic_figures::{colours, deflections, stresses};
 use super::ends::Ends;
+use super::forces::arrows;
 use super::optimise::asked;
 use super::shapes::{Detail, shape};
 use super::simulate::Simulation;
@@ -51,7 +52,7 @@ impl<'a> Shown<'a> {
 ///
 /// # Errors
 /// If a number of the record is not finite.
-pub(crate) fn page(
+pub fn page(
     problem: &Problem,
     summary: String,
     ends: &Ends,
@@ -83,7 +84,7 @@ pub(crate) fn page(
 ///
 /// # Errors
 /// Not for finite numbers.
-pub(crate) fn so_far(problem: &Problem, history: &History) -> Result<String, serde_json::Error> {
+pub fn so_far(problem: &Problem, history: &History) -> Result<String, serde_json::Error> {
     let iteration = history.rows.last().map_or(0, |row| row.iteration);
     page::html(&page::Page {
         name: &problem.name,
@@ -252,6 +253,12 @@ fn stage(shown: &Shown, notes: &mut Vec<String>) -> Stage {
         each.map(|&k| list(&traces::place(&Snapshot::of(model, run, k), trace)))
             .collect()
     };
+    let (arrows, too_many) = arrows(simulation, &frames);
+    if too_many {
+        notes.push(format!(
+            "Of the {of}, no forces are shown: there are too many joints."
+        ));
+    }
     let coloured = colours(model, drawing, std::slice::from_ref(stresses));
     Stage {
         title: (*title).to_owned(),
@@ -262,6 +269,7 @@ fn stage(shown: &Shown, notes: &mut Vec<String>) -> Stage {
         links: (joined((model, run), drawing, &frames).into_iter())
             .map(link)
             .collect(),
+        arrows,
         paths: drawing.traces.iter().map(path).collect(),
         view: [list(&drawing.right), list(&drawing.up)],
         ground: drawing.ground,

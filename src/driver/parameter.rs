@@ -18,10 +18,7 @@ use crate::report::history::Column;
 ///
 /// # Errors
 /// If the simulation or its gradient fails.
-pub(crate) fn sensitivity(
-    problem: &Problem,
-    outcome: &Outcome,
-) -> Result<Option<f64>, EvaluationFailure> {
+pub fn sensitivity(problem: &Problem, outcome: &Outcome) -> Result<Option<f64>, EvaluationFailure> {
     let Some(mut program) = Evaluator::new(problem, KnownEvaluations::default()) else {
         return Ok(None);
     };
@@ -43,7 +40,7 @@ type Columns = (Column, Vec<Column>, Vec<Column>);
 /// The best optimum of `problem`, in which a parameter has the value `value`, and the names of its numbers. The
 /// runs start at the optimum before, if any, and at `starts`, the first of which is that of the file. `None` if
 /// there is nothing to optimise, or `stopped` before a run began.
-pub(crate) fn swept(
+pub fn swept(
     problem: &Problem,
     value: f64,
     (last, starts): (Option<Vec<f64>>, Vec<Vec<f64>>),

@@ -12,7 +12,7 @@ use std::path::{Path, PathBuf};
 
 /// Why the designs of a record cannot be simulated again.
 #[derive(Debug, thiserror::Error)]
-pub(crate) enum RecordedError {
+pub enum RecordedError {
     /// The document in the record is not a problem that this version can read.
     #[error("{0}")]
     Problem(crate::problem::Faults),
@@ -22,7 +22,7 @@ pub(crate) enum RecordedError {
 }
 
 /// The problem of a record, with the start and the end of its optimisation.
-pub(crate) struct Recorded {
+pub struct Recorded {
     /// The problem, without what neither objective nor constraints need.
     pub problem: Problem,
     start: Option<Simulated>,
@@ -35,7 +35,7 @@ impl Recorded {
     ///
     /// # Errors
     /// If the record does not hold a readable problem and a value of each of its variables.
-    pub(crate) fn of(
+    pub fn of(
         optimum: &Optimum,
         state: Option<&WarmStart>,
         directory: &Path,
@@ -81,7 +81,7 @@ impl Recorded {
     }
 
     /// Both designs, as far as they could be simulated.
-    pub(crate) fn ends(&self) -> Ends<'_> {
+    pub fn ends(&self) -> Ends<'_> {
         Ends::new(self.start.as_ref(), self.end.as_ref())
     }
 }

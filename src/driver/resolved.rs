@@ -27,7 +27,7 @@ const ALIKE: f64 = 0.3;
 
 /// A derivative whose estimated error is a tenth of its size or more.
 #[derive(Clone, Debug, PartialEq)]
-pub(crate) struct Unresolved {
+pub struct Unresolved {
     /// Function and variable, by index.
     pub of: (usize, usize),
     /// The derivative and its estimated error.
@@ -38,7 +38,7 @@ pub(crate) struct Unresolved {
 
 impl Unresolved {
     /// The derivative with its names.
-    pub(crate) fn describe(&self, problem: &Problem) -> String {
+    pub fn describe(&self, problem: &Problem) -> String {
         let (f, i) = self.of;
         format!(
             "the derivative of \"{}\" by \"{}\", {:.6e}, has an estimated error of {:.1e}",
@@ -48,7 +48,7 @@ impl Unresolved {
 }
 
 /// Why a gradient is refused, if it is: names the first derivatives.
-pub(crate) fn refusal(problem: &Problem, found: &[Unresolved]) -> Option<String> {
+pub fn refusal(problem: &Problem, found: &[Unresolved]) -> Option<String> {
     let more = match found.len() {
         0 => return None,
         1..=3 => String::new(),
@@ -67,7 +67,7 @@ pub(crate) fn refusal(problem: &Problem, found: &[Unresolved]) -> Option<String>
 }
 
 /// What may resolve the derivatives of a problem.
-pub(crate) fn advice(problem: &Problem) -> &'static str {
+pub fn advice(problem: &Problem) -> &'static str {
     match problem.simulation.spacing {
         Spacing::Steps(_) => "take more \"steps\", or a shorter duration",
         Spacing::Tolerance(_) | Spacing::Frozen(_) => {
@@ -80,10 +80,7 @@ pub(crate) fn advice(problem: &Problem) -> &'static str {
 ///
 /// # Errors
 /// If the simulation or a gradient fails.
-pub(crate) fn of_design(
-    problem: &Problem,
-    x: &[f64],
-) -> Result<Vec<Unresolved>, IntegrationFailure> {
+pub fn of_design(problem: &Problem, x: &[f64]) -> Result<Vec<Unresolved>, IntegrationFailure> {
     let scene = problem.scene(x);
     let which: Vec<usize> = (0..scene.functions.len()).collect();
     let mut integration = Integration::new(problem, &scene, Some(&which), true);
@@ -98,7 +95,7 @@ pub(crate) fn of_design(
 ///
 /// # Errors
 /// If the simulation with halved steps or its gradient fails.
-pub(crate) fn of_gradients(
+pub fn of_gradients(
     problem: &Problem,
     at: &Evaluated,
     which: &[usize],
@@ -115,7 +112,7 @@ pub(crate) fn of_gradients(
 /// What the steps do not resolve of the gradients at the end of an optimisation, where the size of a
 /// derivative is at least that at the start, as the gradient at an optimum may vanish. Adaptive explicit
 /// steps resolve all by themselves. Where it cannot be judged there is none.
-pub(crate) fn at_the_end(
+pub fn at_the_end(
     problem: &Problem,
     (start, end): (&Evaluated, &Evaluated),
     which: &[usize],

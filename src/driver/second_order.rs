@@ -60,7 +60,7 @@ struct Active {
 ///
 /// # Errors
 /// If a simulation near the optimum fails.
-pub(crate) fn second_order(
+pub fn second_order(
     problem: &Problem,
     outcome: &Outcome,
     integration: &Integration,

@@ -15,7 +15,7 @@ const INSTANTS: usize = 101;
 
 /// `fields_0000.vtu` … and `fields.pvd`; nothing if no body has finite elements. The instants have equal
 /// numbers of samples between them. All shells and beams are one mesh in ground axes.
-pub(crate) fn series(
+pub fn series(
     directory: &Path,
     problem: &Problem,
     simulation: &Simulation,

@@ -1,6 +1,7 @@
 //! A simulation and its observations.
 
 use super::evaluate::Evaluated;
+use super::flexible_limits::many_steps;
 use super::integration::Integration;
 use crate::functions::Scene;
 use crate::integrate::{IntegrationFailure, Multipliers, Trajectory};
@@ -10,7 +11,7 @@ use crate::system::observe::{Observation, Reaction, observe, reactions};
 use std::borrow::Cow;
 
 /// A simulated design with its observations at every instant.
-pub(crate) struct Simulation {
+pub struct Simulation {
     /// The design, its scene and motion.
     pub at: Evaluated,
     /// The scene without lowering. Observations and reactions are those of this scene.
@@ -31,7 +32,7 @@ pub(crate) struct Simulation {
 ///
 /// # Errors
 /// If the simulation fails.
-pub(crate) fn simulate(problem: &Problem, x: &[f64]) -> Result<Simulation, IntegrationFailure> {
+pub fn simulate(problem: &Problem, x: &[f64]) -> Result<Simulation, IntegrationFailure> {
     of_design(problem, x, false)
 }
 
@@ -39,7 +40,7 @@ pub(crate) fn simulate(problem: &Problem, x: &[f64]) -> Result<Simulation, Integ
 ///
 /// # Errors
 /// If the simulation fails.
-pub(crate) fn simulate_for_gradients(
+pub fn simulate_for_gradients(
     problem: &Problem,
     x: &[f64],
 ) -> Result<Simulation, IntegrationFailure> {
@@ -59,7 +60,7 @@ fn of_design(
 ///
 /// # Errors
 /// If the simulation fails.
-pub(crate) fn simulate_with(
+pub fn simulate_with(
     integration: &mut Integration,
     problem: &Problem,
     x: &[f64],
@@ -102,12 +103,12 @@ impl Simulation {
     }
 
     /// The motion of all bodies.
-    pub(crate) fn motion(&self) -> &Trajectory<f64> {
+    pub fn motion(&self) -> &Trajectory<f64> {
         self.expanded.as_ref().unwrap_or(&self.at.run)
     }
 
     /// Largest |E(t) − E(0)| of the total energy \[J\].
-    pub(crate) fn energy_drift(&self) -> f64 {
+    pub fn energy_drift(&self) -> f64 {
         let total = |o: &Observation| o.kinetic + o.potential;
         let start = total(&self.observations[0]);
         self.observations
@@ -116,22 +117,26 @@ impl Simulation {
     }
 
     /// Largest position and velocity constraint violations.
-    pub(crate) fn constraint_drift(&self) -> (f64, f64) {
+    pub fn constraint_drift(&self) -> (f64, f64) {
         let all = self.observations.iter();
         all.fold((0.0, 0.0), |(p, v), o| {
             (p.max(o.position_drift), v.max(o.velocity_drift))
         })
     }
 
+    /// Advice on the number of its steps, if elastic bodies vibrate in many.
+    pub fn many_steps(&self, problem: &Problem) -> Option<String> {
+        many_steps(problem, &self.at.scene.model, &self.at.run)
+    }
+
     /// Joint reactions at instant k.
-    #[cfg(test)]
     pub fn reactions(&self, k: usize) -> Vec<Reaction> {
         let all = self.reactions_at(std::iter::once(k));
         all.into_iter().flatten().collect()
     }
 
     /// Joint reactions at the given instants.
-    pub(crate) fn reactions_at(&self, instants: impl Iterator<Item = usize>) -> Vec<Vec<Reaction>> {
+    pub fn reactions_at(&self, instants: impl Iterator<Item = usize>) -> Vec<Vec<Reaction>> {
         let (model, run) = (&self.written.model, self.motion());
         let numbering = Numbering::new(model);
         let mut multipliers = Multipliers::new(model, &numbering, run);

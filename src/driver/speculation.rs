@@ -51,7 +51,7 @@ fn simulated(
 
 impl SpeculativeCache {
     /// Simulates the first of `designs`, as many as there are processors.
-    pub(crate) fn simulate(
+    pub fn simulate(
         &mut self,
         asked: (&Problem, &[usize]),
         integration: &Integration,
@@ -69,7 +69,7 @@ impl SpeculativeCache {
     }
 
     /// Computes the gradients of `functions` at all `designs`.
-    pub(crate) fn differentiate(
+    pub fn differentiate(
         &mut self,
         problem: &Problem,
         integration: &Integration,
@@ -89,7 +89,7 @@ impl SpeculativeCache {
     }
 
     /// The cached simulation of a design with the steps in use.
-    pub(crate) fn take(
+    pub fn take(
         &mut self,
         integration: &Integration,
         x: &[f64],
@@ -99,11 +99,7 @@ impl SpeculativeCache {
     }
 
     /// The cached gradients of a design.
-    pub(crate) fn take_gradients(
-        &mut self,
-        integration: &Integration,
-        x: &[f64],
-    ) -> Option<Derived> {
+    pub fn take_gradients(&mut self, integration: &Integration, x: &[f64]) -> Option<Derived> {
         self.keep(integration);
         self.derived.remove(&bits(x))
     }

@@ -7,7 +7,6 @@ use crate::model::{Model, RigidBody};
 use crate::problem::Problem;
 use crate::system::flexible::{MeanSquare, strain_energy};
 use crate::system::initial::{self, InitialState};
-use crate::system::kkt::SaddlePoint;
 use crate::system::placement::{guess, length_scale};
 use crate::system::{BodyMotion, InMotion, Numbering, joints, redundancy};
 
@@ -20,7 +19,7 @@ const NEARLY: f64 = 1e-4;
 
 /// Notes on the start at the design `x`, one sentence each; empty if the start is as given, or if
 /// there is none.
-pub(crate) fn notes(problem: &Problem, x: &[f64]) -> Vec<String> {
+pub fn notes(problem: &Problem, x: &[f64]) -> Vec<String> {
     match problem.without_equilibrium() {
         Some(placed) => {
             let mut notes = of_placement(&placed, x, " before equilibrium is sought");
@@ -34,7 +33,7 @@ pub(crate) fn notes(problem: &Problem, x: &[f64]) -> Vec<String> {
 }
 
 /// A start in equilibrium from which a disturbance grows, as that of a column that buckles.
-pub(crate) fn unstable(problem: &Problem, x: &[f64]) -> Option<String> {
+pub fn unstable(problem: &Problem, x: &[f64]) -> Option<String> {
     let growth = problem.growth_at_equilibrium(x)?;
     Some(format!(
         "the start in equilibrium is not stable: a disturbance grows by a factor of e in {:.1e} s, unless rotation \
@@ -55,8 +54,7 @@ fn of_placement(problem: &Problem, x: &[f64], when: &str) -> Vec<String> {
     if !stuck && consistent(&model, &numbering) {
         return notes;
     }
-    let mut saddle = SaddlePoint::new(&model, &numbering);
-    let Ok(start) = initial::solve(&model, &numbering, &mut saddle) else {
+    let Ok(start) = initial::consistent(&model, &numbering) else {
         return notes;
     };
     if stuck {

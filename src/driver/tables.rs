@@ -14,7 +14,7 @@ use crate::system::observe::Reaction;
 
 /// The axes of joint reactions.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub(crate) enum ReactionAxes {
+pub enum ReactionAxes {
     /// Those of ground.
     Ground,
     /// Those of the joint on its first body; e3 is the joint's axis.
@@ -22,7 +22,7 @@ pub(crate) enum ReactionAxes {
 }
 
 /// `simulation.csv`, `motion.csv` and, if there are functions, `functions.csv`.
-pub(crate) fn of_simulation(
+pub fn of_simulation(
     problem: &Problem,
     simulation: &Simulation,
     axes: ReactionAxes,

@@ -23,7 +23,7 @@ pub(super) fn place(at: &Snapshot<f64>, trace: &Trace) -> Vec3<f64> {
 }
 
 /// The coordinates x, y and z of the points in ground axes against time \[m\].
-pub(crate) fn positions(title: &str, simulation: &Simulation, drawing: &Drawing) -> [Curves; 3] {
+pub fn positions(title: &str, simulation: &Simulation, drawing: &Drawing) -> [Curves; 3] {
     let (model, run) = (&simulation.written.model, simulation.motion());
     let mut paths: Vec<Vec<Vec3<f64>>> = vec![Vec::new(); drawing.traces.len()];
     for k in 0..=run.last() {

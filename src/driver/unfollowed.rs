@@ -26,7 +26,7 @@ const PER_STEP: usize = 8;
 const SAMPLES: usize = 16;
 
 /// Why the estimated errors of a motion with given steps say little, if so.
-pub(crate) fn unfollowed(problem: &Problem, at: &Evaluated) -> Option<String> {
+pub fn unfollowed(problem: &Problem, at: &Evaluated) -> Option<String> {
     let Spacing::Steps(_) = problem.simulation.spacing else {
         return None;
     };

@@ -14,7 +14,7 @@ const ROUND_OFF: f64 = 4.0 * f64::EPSILON;
 /// The optimiser's state at the end of a run, and the problem that it belongs to: `state.json`.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
-pub(crate) struct WarmStart {
+pub struct WarmStart {
     /// Names and scales of the variables.
     variables: Vec<(String, f64)>,
     /// Names of the constraints.
@@ -34,11 +34,7 @@ pub(crate) struct WarmStart {
 
 impl WarmStart {
     /// The state at the end of a run.
-    pub(crate) fn of(
-        problem: &Problem,
-        outcome: &Outcome,
-        integration: &Integration,
-    ) -> Option<Self> {
+    pub fn of(problem: &Problem, outcome: &Outcome, integration: &Integration) -> Option<Self> {
         let steps = integration.chosen().and_then(|(settings, reason)| {
             let Spacing::Frozen(grid) = &settings.spacing else {
                 return None;
@@ -57,13 +53,13 @@ impl WarmStart {
     }
 
     /// The steps in use at the end, if they followed a tolerance.
-    pub(crate) fn kept_steps(&self) -> Option<KeptSteps> {
+    pub fn kept_steps(&self) -> Option<KeptSteps> {
         kept(self.steps.as_ref()?, 0)
     }
 
     /// Whether the state belongs to `design`, in the units of the problem file: equal up to the
     /// round-off of the scales.
-    pub(crate) fn is_at(&self, design: &[f64]) -> bool {
+    pub fn is_at(&self, design: &[f64]) -> bool {
         let point = self.variables.iter().zip(&self.state.x);
         let same = |((_, scale), x): (&(String, f64), &f64), d: &f64| {
             (scale * x - d).abs() <= ROUND_OFF * d.abs()
@@ -73,7 +69,7 @@ impl WarmStart {
 
     /// Whether the state fits `problem`: same variables, scales, constraints and objective, and no
     /// damage.
-    pub(crate) fn fits(&self, problem: &Problem) -> bool {
+    pub fn fits(&self, problem: &Problem) -> bool {
         let (n, m) = (self.variables.len(), self.constraints.len());
         self.variables == variables(problem)
             && self.constraints == constraints(problem)

@@ -5,10 +5,10 @@
 
 use nalgebra::DVector;
 
-use crate::optimiser::linear::quasi_newton::QuasiNewton;
-use crate::optimiser::multipliers::{ScaledMultipliers, least_squares};
-use crate::optimiser::outcome::Kkt;
-use crate::optimiser::program::{Derivatives, Point, Program};
+use crate::linear::quasi_newton::QuasiNewton;
+use crate::multipliers::{ScaledMultipliers, least_squares};
+use crate::outcome::Kkt;
+use crate::program::{Derivatives, Point, Program};
 
 /// Unit of forces where the gradient vanishes, as a part of the typical gradient. Ten times more or less
 /// changes the count of solved problems by at most one.

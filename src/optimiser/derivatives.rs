@@ -1,6 +1,6 @@
 //! The derivatives of a program, compared with differences of its values.
 
-use crate::optimiser::nlp::{Evaluation, EvaluationFailure, Nlp};
+use crate::nlp::{Evaluation, EvaluationFailure, Nlp};
 
 /// The worst derivative of one function.
 #[derive(Clone, Debug, PartialEq)]

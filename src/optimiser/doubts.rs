@@ -3,10 +3,10 @@
 
 use nalgebra::DVector;
 
-use crate::optimiser::ending::FinalIterate;
-use crate::optimiser::multipliers::{ScaledMultipliers, user_multipliers};
-use crate::optimiser::program::{Derivatives, FAR, Point, Program};
-use crate::optimiser::status::Status;
+use crate::ending::FinalIterate;
+use crate::multipliers::{ScaledMultipliers, user_multipliers};
+use crate::program::{Derivatives, FAR, Point, Program};
+use crate::status::Status;
 
 /// How often the distance of a doubtful solution from the first point is doubled. With two, three outcomes
 /// of the bed change.

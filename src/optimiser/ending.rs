@@ -3,16 +3,16 @@
 
 use nalgebra::DVector;
 
-use crate::optimiser::convergence::{
+use crate::convergence::{
     dominant_row, is_at_precision, is_solved, is_solved_in_user_units, kkt, scaled_residual,
 };
-use crate::optimiser::linear::quasi_newton::QuasiNewton;
-use crate::optimiser::multipliers::ScaledMultipliers;
-use crate::optimiser::options::Method;
-use crate::optimiser::outcome::Kkt;
-use crate::optimiser::program::{Derivatives, EarlyExit, Point, Program};
-use crate::optimiser::scaling::Units;
-use crate::optimiser::status::Status;
+use crate::linear::quasi_newton::QuasiNewton;
+use crate::multipliers::ScaledMultipliers;
+use crate::options::Method;
+use crate::outcome::Kkt;
+use crate::program::{Derivatives, EarlyExit, Point, Program};
+use crate::scaling::Units;
+use crate::status::Status;
 
 /// The final iterate of a method.
 pub(crate) struct FinalIterate {

@@ -6,14 +6,14 @@ use std::time::Instant;
 
 use nalgebra::DVector;
 
-use crate::optimiser::linear::jacobian::Jacobian;
-use crate::optimiser::nlp::{
+use crate::linear::jacobian::Jacobian;
+use crate::nlp::{
     Evaluation, EvaluationFailure, Gradients, fault_of_evaluation, fault_of_gradients,
     length_of_evaluation, length_of_gradients,
 };
-use crate::optimiser::outcome::FailedDesign;
-use crate::optimiser::program::{Derivatives, EarlyExit, Point, Program};
-use crate::optimiser::status::Status;
+use crate::outcome::FailedDesign;
+use crate::program::{Derivatives, EarlyExit, Point, Program};
+use crate::status::Status;
 
 /// Largest number of recorded designs with a failed evaluation.
 const FAILED_DESIGNS_KEPT: usize = 100;

@@ -2,7 +2,7 @@
 
 use nalgebra::DVector;
 
-use crate::optimiser::program::{Derivatives, Program};
+use crate::program::{Derivatives, Program};
 
 /// Largest violation of a row relative to its size, whatever the tolerance.
 const PART_OF_ROW: f64 = 1e-4;

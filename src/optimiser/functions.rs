@@ -1,7 +1,7 @@
 //! A program given by closures.
 
-use crate::optimiser::linear::jacobian::Jacobian;
-use crate::optimiser::nlp::{Evaluation, EvaluationFailure, Gradients, Nlp};
+use crate::linear::jacobian::Jacobian;
+use crate::nlp::{Evaluation, EvaluationFailure, Gradients, Nlp};
 
 type Objective<'f> = Box<dyn FnMut(&[f64]) -> (f64, Vec<f64>) + 'f>;
 type Rows<'f> = Box<dyn FnMut(&[f64]) -> (Vec<f64>, Jacobian) + 'f>;

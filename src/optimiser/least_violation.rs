@@ -2,12 +2,12 @@
 
 use nalgebra::{DMatrix, DVector};
 
-use crate::optimiser::linear::jacobian::Jacobian;
-use crate::optimiser::linear::quasi_newton::Spectrum;
-use crate::optimiser::observer::Phase;
-use crate::optimiser::program::{Derivatives, EarlyExit, Point, Program, Progress};
-use crate::optimiser::quadratic::data::{Hessian, QpData};
-use crate::optimiser::quadratic::elastic::ElasticQp;
+use crate::linear::jacobian::Jacobian;
+use crate::linear::quasi_newton::Spectrum;
+use crate::observer::Phase;
+use crate::program::{Derivatives, EarlyExit, Point, Program, Progress};
+use crate::quadratic::data::{Hessian, QpData};
+use crate::quadratic::elastic::ElasticQp;
 
 /// A step is tried only if it promises this part of the violation. Ten times more or less changes one
 /// outcome of the bed.

@@ -2,10 +2,10 @@
 
 use nalgebra::DVector;
 
-use crate::optimiser::linear::jacobian::Jacobian;
-use crate::optimiser::linear::kkt_sparse::SparseKkt;
-use crate::optimiser::program::{Derivatives, Point, Program};
-use crate::optimiser::state::Multipliers;
+use crate::linear::jacobian::Jacobian;
+use crate::linear::kkt_sparse::SparseKkt;
+use crate::program::{Derivatives, Point, Program};
+use crate::state::Multipliers;
 
 /// Multipliers of the scaled program: rows, then lower and upper bounds of the variables.
 #[derive(Clone, Debug)]

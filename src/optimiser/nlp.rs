@@ -2,8 +2,8 @@
 
 use serde::{Deserialize, Serialize};
 
-use crate::optimiser::linear::curvature::Curvature;
-use crate::optimiser::linear::jacobian::Jacobian;
+use crate::linear::curvature::Curvature;
+use crate::linear::jacobian::Jacobian;
 
 /// A smooth nonlinear program, minimise f(x) subject to c_L ≤ c(x) ≤ c_U and x_L ≤ x ≤ x_U.
 ///

@@ -26,7 +26,7 @@ pub enum Barrier {
     Adaptive,
 }
 
-/// Settings of [`solve`](crate::optimiser::solve).
+/// Settings of [`solve`](crate::solve).
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 #[serde(default, deny_unknown_fields)]
 pub struct Options {

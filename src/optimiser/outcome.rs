@@ -2,9 +2,9 @@
 
 use serde::{Deserialize, Serialize};
 
-use crate::optimiser::options::Method;
-use crate::optimiser::state::{Multipliers, SavedState, Scaling};
-use crate::optimiser::status::Status;
+use crate::options::Method;
+use crate::state::{Multipliers, SavedState, Scaling};
+use crate::status::Status;
 
 /// Residuals of the Karush–Kuhn–Tucker conditions.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Serialize, Deserialize)]

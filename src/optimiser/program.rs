@@ -5,13 +5,13 @@ use std::time::Instant;
 
 use nalgebra::DVector;
 
-use crate::optimiser::linear::jacobian::Jacobian;
-use crate::optimiser::nlp::{EvaluationFailure, Nlp};
-use crate::optimiser::observer::{Observer, Phase, Row};
-use crate::optimiser::options::{Method, Options};
-use crate::optimiser::outcome::{Counts, FailedDesign};
-use crate::optimiser::state::Scaling;
-use crate::optimiser::status::Status;
+use crate::linear::jacobian::Jacobian;
+use crate::nlp::{EvaluationFailure, Nlp};
+use crate::observer::{Observer, Phase, Row};
+use crate::options::{Method, Options};
+use crate::outcome::{Counts, FailedDesign};
+use crate::state::Scaling;
+use crate::status::Status;
 
 /// Distance from the first point, relative to its size. Beyond it a fall in scaled units shows an
 /// unbounded objective, and a solution is doubted: without that, three claims of the bed are false.

@@ -1,9 +1,9 @@
 //! Restart of a stalled method, in units that suit the point where it stalled.
 
-use crate::optimiser::doubts::degenerate_row;
-use crate::optimiser::ending::FinalIterate;
-use crate::optimiser::program::{Derivatives, Point, Program};
-use crate::optimiser::status::Status;
+use crate::doubts::degenerate_row;
+use crate::ending::FinalIterate;
+use crate::program::{Derivatives, Point, Program};
+use crate::status::Status;
 
 /// Restarts from a feasible point where `finish` stalled. The restart has new units, an empty
 /// quasi-Newton matrix and no earlier derivatives. It is repeated as long as the objective

@@ -1,14 +1,14 @@
 //! The outcome of a run, made of its final iterate.
 
-use crate::optimiser::convergence::unit_of_forces;
-use crate::optimiser::ending::FinalIterate;
-use crate::optimiser::multipliers::user_multipliers;
-use crate::optimiser::nlp::Nlp;
-use crate::optimiser::options::Method;
-use crate::optimiser::outcome::{ActiveBound, BoundSide, Counts, Kkt, Outcome};
-use crate::optimiser::program::{Derivatives, Program};
-use crate::optimiser::state::{SavedState, Scaling};
-use crate::optimiser::status::Status;
+use crate::convergence::unit_of_forces;
+use crate::ending::FinalIterate;
+use crate::multipliers::user_multipliers;
+use crate::nlp::Nlp;
+use crate::options::Method;
+use crate::outcome::{ActiveBound, BoundSide, Counts, Kkt, Outcome};
+use crate::program::{Derivatives, Program};
+use crate::state::{SavedState, Scaling};
+use crate::status::Status;
 
 /// State at the last point, which may differ from the best.
 pub(crate) fn state_of(program: &Program<'_>, finish: &FinalIterate) -> SavedState {

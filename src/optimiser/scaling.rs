@@ -5,11 +5,11 @@ use std::time::Instant;
 
 use nalgebra::DVector;
 
-use crate::optimiser::evaluations::unless_panicked;
-use crate::optimiser::linear::curvature::Curvature;
-use crate::optimiser::program::{Derivatives, EarlyExit, Point, Program};
-use crate::optimiser::state::Scaling;
-use crate::optimiser::status::Status;
+use crate::evaluations::unless_panicked;
+use crate::linear::curvature::Curvature;
+use crate::program::{Derivatives, EarlyExit, Point, Program};
+use crate::state::Scaling;
+use crate::status::Status;
 
 /// Largest factor of a function. A gradient that is smaller by this factor is rounding. Without
 /// a limit two problems of the bed are lost, whose least value is zero.

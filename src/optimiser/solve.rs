@@ -2,23 +2,23 @@
 
 use nalgebra::DVector;
 
-use crate::optimiser::convergence::scaled_residual;
-use crate::optimiser::doubts::{doubted, wrong_gradients};
-use crate::optimiser::ending::{FinalIterate, best_of, unfinished, without_freedom};
-use crate::optimiser::interior_point::run::{RESUMED_PUSH, interior_point};
-use crate::optimiser::least_violation::least_violation;
-use crate::optimiser::multipliers::ScaledMultipliers;
-use crate::optimiser::nlp::Nlp;
-use crate::optimiser::observer::{Observer, Phase};
-use crate::optimiser::options::{Method, Options};
-use crate::optimiser::outcome::Outcome;
-use crate::optimiser::program::{Derivatives, EarlyExit, Point, Program, Progress};
-use crate::optimiser::report::{outcome, state_of, untried, without_values};
-use crate::optimiser::start::{Neighbourhood, first_point, left_start, look_around};
-use crate::optimiser::state::SavedState;
-use crate::optimiser::status::Status;
-use crate::optimiser::trust_region::run::trust_region;
-use crate::optimiser::well_posed;
+use crate::convergence::scaled_residual;
+use crate::doubts::{doubted, wrong_gradients};
+use crate::ending::{FinalIterate, best_of, unfinished, without_freedom};
+use crate::interior_point::run::{RESUMED_PUSH, interior_point};
+use crate::least_violation::least_violation;
+use crate::multipliers::ScaledMultipliers;
+use crate::nlp::Nlp;
+use crate::observer::{Observer, Phase};
+use crate::options::{Method, Options};
+use crate::outcome::Outcome;
+use crate::program::{Derivatives, EarlyExit, Point, Program, Progress};
+use crate::report::{outcome, state_of, untried, without_values};
+use crate::start::{Neighbourhood, first_point, left_start, look_around};
+use crate::state::SavedState;
+use crate::status::Status;
+use crate::trust_region::run::trust_region;
+use crate::well_posed;
 
 /// Shares of iterations and evaluations after which [`Method::Auto`] changes from the interior point
 /// to the trust region. A run that needs as much is likely to need all, and one with three

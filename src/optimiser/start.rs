@@ -2,10 +2,10 @@
 
 use nalgebra::DVector;
 
-use crate::optimiser::interior_point::iterate::margin;
-use crate::optimiser::nlp::EvaluationFailure;
-use crate::optimiser::options::Method;
-use crate::optimiser::program::{Derivatives, EarlyExit, Point, Program};
+use crate::interior_point::iterate::margin;
+use crate::nlp::EvaluationFailure;
+use crate::options::Method;
+use crate::program::{Derivatives, EarlyExit, Point, Program};
 
 /// Distances of the points tried near one that seems infeasible or at which the functions are
 /// undefined, relative to the size of the point if there are no bounds.

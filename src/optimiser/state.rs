@@ -2,7 +2,7 @@
 
 use serde::{Deserialize, Serialize};
 
-use crate::optimiser::linear::quasi_newton::QuasiNewton;
+use crate::linear::quasi_newton::QuasiNewton;
 
 /// Two values of one objective at almost the same point differ by less than this, relatively. Ten times
 /// more or less is the same.

@@ -1,8 +1,8 @@
 //! Faults of a program or of the options that are found before any evaluation.
 
-use crate::optimiser::nlp::Nlp;
-use crate::optimiser::options::{Method, Options};
-use crate::optimiser::status::Status;
+use crate::nlp::Nlp;
+use crate::options::{Method, Options};
+use crate::status::Status;
 
 /// Largest number of variables for the trust region. Above it the subproblems take much longer than
 /// the iterations of the interior point.

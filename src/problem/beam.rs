@@ -1,10 +1,10 @@
 //! From the beams of a file to bodies with elastic coordinates.
 
-use super::quantity::Quantity;
-use super::schema::Document;
-use super::schema::flexible::{Beam, BeamSection, Damping, Frame, Functions, Strain};
 use super::section::section;
 use crate::math::Scalar;
+use crate::quantity::Quantity;
+use crate::schema::Document;
+use crate::schema::flexible::{Beam, BeamSection, Damping, Frame, Functions, Strain};
 use crate::structures::beam::SectionValues;
 use crate::structures::material::Material;
 use crate::structures::modal::{
@@ -26,7 +26,7 @@ const MOST: usize = 12;
 const MOST_STRETCH: usize = 25;
 
 /// How many functions a beam has.
-pub(crate) fn modes(beam: &Beam) -> BeamModes {
+pub fn modes(beam: &Beam) -> BeamModes {
     let number = |written: Option<u32>, default| written.unwrap_or(default) as usize;
     let bending = [
         number(beam.modes.bending_y, BENDING),
@@ -90,7 +90,7 @@ fn kinds(modes: &BeamModes) -> [usize; 4] {
 }
 
 /// Whether the sections of a beam shear.
-pub(crate) fn shears(beam: &Beam) -> bool {
+pub fn shears(beam: &Beam) -> bool {
     match &beam.section {
         BeamSection::Given(given) => given.ga_y.is_some() || given.ga_z.is_some(),
         _ => beam.shear.unwrap_or(true),
@@ -98,7 +98,7 @@ pub(crate) fn shears(beam: &Beam) -> bool {
 }
 
 /// The beam at the design `x`. Missing entries, which a checked file does not lack, count as one.
-pub(crate) fn beam<S: Scalar>(written: &Beam, x: &[S]) -> FlexibleBeam<S> {
+pub fn beam<S: Scalar>(written: &Beam, x: &[S]) -> FlexibleBeam<S> {
     let get = |quantity: &Quantity| quantity.get(x);
     let or = |quantity: &Option<Quantity>, default: f64| {
         quantity.as_ref().map_or(S::from(default), |q| q.get(x))
@@ -167,7 +167,7 @@ fn damping<S: Scalar>(written: Option<&Damping>, x: &[S]) -> BeamDamping<S> {
 }
 
 /// Elastic coordinates and their rates at the start.
-pub(crate) fn start<S: Scalar>(written: &Beam, x: &[S]) -> [Vec<S>; 2] {
+pub fn start<S: Scalar>(written: &Beam, x: &[S]) -> [Vec<S>; 2] {
     let count = modes(written).count();
     let row = |given: Option<&Vec<Quantity>>| {
         let mut all: Vec<S> = given.into_iter().flatten().map(|q| q.get(x)).collect();

@@ -7,7 +7,7 @@ use std::io::{self, Read};
 use std::path::Path;
 
 /// Largest file \[bytes\].
-pub(crate) const LARGEST: usize = 256 << 20;
+pub const LARGEST: usize = 256 << 20;
 /// Largest number of entries of one list or object, and of all together.
 const MOST_ENTRIES: usize = 1_000_000;
 const MOST_VALUES: usize = 8_000_000;

@@ -6,12 +6,12 @@ use super::elastic_drawing::{
 };
 use super::fibres::{BeamFibres, fibres};
 use super::placement::Assembly;
-use super::quantity::vector;
-use super::schema::functions::Function;
-use super::schema::mechanics::{Body, Shape};
-use super::schema::{Document, View};
 use crate::math::Vec3;
 use crate::model::Model;
+use crate::quantity::vector;
+use crate::schema::functions::Function;
+use crate::schema::mechanics::{Body, Shape};
+use crate::schema::{Document, View};
 use std::f64::consts::TAU;
 
 /// Default number of instants of the time lapse.
@@ -23,7 +23,7 @@ const CORNERS: usize = 32;
 
 /// The outline of a body: points from its centre of mass, body axes \[m\].
 #[derive(Clone, Debug)]
-pub(crate) enum Outline {
+pub enum Outline {
     /// The silhouette is the convex hull of these points in the plane of the view.
     Hull(Vec<Vec3<f64>>),
     /// The silhouette is a circle of this radius about the centre of mass.
@@ -38,7 +38,7 @@ pub(crate) enum Outline {
 
 /// A barrier across the direction of flight.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub(crate) struct BarrierLine {
+pub struct BarrierLine {
     /// Position along the direction of flight \[m\].
     pub distance: f64,
     /// Height of the top above the origin \[m\].
@@ -47,7 +47,7 @@ pub(crate) struct BarrierLine {
 
 /// How the motion of a design is drawn.
 #[derive(Clone, Debug)]
-pub(crate) struct Drawing {
+pub struct Drawing {
     /// A point p is drawn at right · p to the right: a ground axis, or for shells an axis less a
     /// part of the one that points to the viewer.
     pub right: Vec3<f64>,
@@ -71,23 +71,23 @@ pub(crate) struct Drawing {
 
 impl Drawing {
     /// Place of a point of ground in the picture, to the right and up.
-    pub(crate) fn flat(&self, point: &Vec3<f64>) -> [f64; 2] {
+    pub fn flat(&self, point: &Vec3<f64>) -> [f64; 2] {
         [self.right.dot(point), self.up.dot(point)]
     }
 
     /// The direction to the viewer: points along it have one place in the picture.
-    pub(crate) fn sight(&self) -> Vec3<f64> {
+    pub fn sight(&self) -> Vec3<f64> {
         self.right.cross(&self.up)
     }
 
     /// Whether it is seen from above and beside.
-    pub(crate) fn is_oblique(&self) -> bool {
+    pub fn is_oblique(&self) -> bool {
         self.sight().norm() > 1.0 + 1e-9
     }
 }
 
 /// The drawing of a checked document at the design `x`.
-pub(crate) fn drawing(document: &Document, order: &[usize], x: &[f64]) -> Drawing {
+pub fn drawing(document: &Document, order: &[usize], x: &[f64]) -> Drawing {
     let assembly = Assembly::new(document, order, x);
     let (right, up) = axes(document.plot.view.unwrap_or_default());
     let towards = right.cross(&up);

@@ -4,10 +4,10 @@ use super::elements::prepared;
 use super::fibres::SLICES;
 use super::holds::nodes_of;
 use super::placement::{Assembly, split_location};
-use super::schema::Document;
-use super::schema::modal::Modal;
 use crate::math::Vec3;
 use crate::model::finite::{ElementMesh, NODES, ShellElement};
+use crate::schema::Document;
+use crate::schema::modal::Modal;
 use crate::structures::modal::{BeamFrame, FlexibleBeam};
 use std::collections::BTreeMap;
 use std::sync::Arc;
@@ -17,7 +17,7 @@ const EDGES: [[usize; 3]; 4] = [[0, 1, 2], [2, 5, 8], [8, 7, 6], [6, 3, 0]];
 
 /// A closed line of points that move on their body.
 #[derive(Clone, Debug)]
-pub(crate) struct DeformedLine {
+pub struct DeformedLine {
     /// Its points: where they are in the undeformed body \[m\], and their displacements by each coordinate. Of a
     /// beam those of one side come first, those of the other side follow in opposite order.
     pub points: Vec<(Vec3<f64>, Vec<Vec3<f64>>)>,
@@ -25,7 +25,7 @@ pub(crate) struct DeformedLine {
 
 /// A displacement of a point of a flexible body against its axes, in its axes \[m\].
 #[derive(Clone, Debug)]
-pub(crate) struct ElasticPoint {
+pub struct ElasticPoint {
     /// Name of the body, the point and the direction.
     pub name: String,
     /// The body.
@@ -36,7 +36,7 @@ pub(crate) struct ElasticPoint {
 
 /// A point whose path is drawn.
 #[derive(Clone, Debug)]
-pub(crate) struct Trace {
+pub struct Trace {
     /// As the file names it.
     pub name: String,
     /// The body.
@@ -49,7 +49,7 @@ pub(crate) struct Trace {
 
 /// A closed line of nodes of shells.
 #[derive(Clone, Debug)]
-pub(crate) struct ShellLine {
+pub struct ShellLine {
     /// The mesh.
     pub mesh: Arc<ElementMesh>,
     /// The nodes, in their order along the line.

@@ -2,16 +2,16 @@
 
 use super::holds::{self, nodes_of};
 use super::parts;
-use super::prepared::Prepared;
-use super::quantity::Quantity;
 use super::reduced;
-use super::schema::Document;
-use super::schema::elements::{ElementBasis, ElementFrame, Elements, Held};
-use super::schema::structures::{Mesh as WrittenMesh, Structure as WrittenStructure};
 use super::statics::mesh::{Part, part};
 use super::statics::properties::{slots, thickness};
 use crate::math::{Scalar, Vec3};
 use crate::model::finite::FiniteElements;
+use crate::prepared::Prepared;
+use crate::quantity::Quantity;
+use crate::schema::Document;
+use crate::schema::elements::{ElementBasis, ElementFrame, Elements, Held};
+use crate::schema::structures::{Mesh as WrittenMesh, Structure as WrittenStructure};
 use crate::structures::beam::{Section, SectionValues};
 use crate::structures::floating::{FrameNodes, NodeMotion, element_mesh};
 use crate::structures::material::Material;
@@ -22,7 +22,7 @@ use crate::structures::structure::{Structure, Topology};
 use std::sync::Arc;
 
 /// The nodes that hold the axes; `None` if a set is missing.
-pub(crate) fn frame_nodes(mesh: &Mesh, frame: &ElementFrame) -> Option<FrameNodes> {
+pub fn frame_nodes(mesh: &Mesh, frame: &ElementFrame) -> Option<FrameNodes> {
     let one = |set: &String| nodes_of(mesh, set)?.first().copied();
     match frame {
         ElementFrame::Chord([o, b, c]) => Some(FrameNodes::Chord([one(o)?, one(b)?, one(c)?])),
@@ -34,14 +34,14 @@ pub(crate) fn frame_nodes(mesh: &Mesh, frame: &ElementFrame) -> Option<FrameNode
 }
 
 /// Whether bodies of elements have all their nodes as coordinates.
-pub(crate) fn has_all_nodes(document: &Document) -> bool {
+pub fn has_all_nodes(document: &Document) -> bool {
     let bodies = document.bodies.values();
     let mut elements = bodies.filter_map(|body| body.elements.as_ref());
     elements.any(|own| own.basis == ElementBasis::Full)
 }
 
 /// The numbers of a mesh.
-pub(crate) fn mesh_quantities(mesh: &WrittenMesh) -> Vec<Quantity> {
+pub fn mesh_quantities(mesh: &WrittenMesh) -> Vec<Quantity> {
     match mesh {
         WrittenMesh::Plate { length, width, .. } => vec![*length, *width],
         WrittenMesh::Panel { points, .. } => points.as_flattened().to_vec(),
@@ -72,7 +72,7 @@ pub(crate) fn mesh_quantities(mesh: &WrittenMesh) -> Vec<Quantity> {
 }
 
 /// The mesh of shells with the numbers of the file.
-pub(crate) fn part_of_file(structure: &WrittenStructure) -> Part<f64> {
+pub fn part_of_file(structure: &WrittenStructure) -> Part<f64> {
     let place = structure.at.iter().flatten().copied();
     let numbers = mesh_quantities(&structure.mesh).into_iter().chain(place);
     let mut x = Vec::new();
@@ -86,7 +86,7 @@ pub(crate) fn part_of_file(structure: &WrittenStructure) -> Part<f64> {
 }
 
 /// Computes the data that no design changes. A checked file has all sets.
-pub(crate) fn prepared(document: &Document, elements: &Elements) -> Arc<Prepared> {
+pub fn prepared(document: &Document, elements: &Elements) -> Arc<Prepared> {
     const CHECKED: &str = "stiffness is checked when a problem is read";
     prepare(document, elements).expect(CHECKED)
 }
@@ -95,10 +95,7 @@ pub(crate) fn prepared(document: &Document, elements: &Elements) -> Arc<Prepared
 ///
 /// # Errors
 /// [`PencilFailure`]: the shells have no reduced basis, as they are a mechanism.
-pub(crate) fn prepare(
-    document: &Document,
-    elements: &Elements,
-) -> Result<Arc<Prepared>, PencilFailure> {
+pub fn prepare(document: &Document, elements: &Elements) -> Result<Arc<Prepared>, PencilFailure> {
     if let Some(known) = elements.prepared.get() {
         return Ok(known.clone());
     }
@@ -194,11 +191,7 @@ pub(super) fn share(written: &Document, bound: &mut Document) {
 }
 
 /// The shells at the design `x`.
-pub(crate) fn finite<S: Scalar>(
-    document: &Document,
-    elements: &Elements,
-    x: &[S],
-) -> FiniteElements<S> {
+pub fn finite<S: Scalar>(document: &Document, elements: &Elements, x: &[S]) -> FiniteElements<S> {
     let prepared = prepared(document, elements);
     shells(document, elements, &prepared, |quantity| quantity.get(x))
 }
@@ -232,6 +225,6 @@ fn shells<S: Scalar>(
 }
 
 /// The place of a named point in the undeformed body, in its axes \[m\].
-pub(crate) fn place(document: &Document, elements: &Elements, name: &str) -> Vec3<f64> {
+pub fn place(document: &Document, elements: &Elements, name: &str) -> Vec3<f64> {
     prepared(document, elements).points[name].place
 }

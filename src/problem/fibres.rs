@@ -4,9 +4,9 @@ use super::beam;
 use super::elements::prepared;
 use super::flexible::outer_fibres;
 use super::parts::lines;
-use super::schema::Document;
-use super::schema::elements::Elements;
 use crate::model::flexible::Quadratic;
+use crate::schema::Document;
+use crate::schema::elements::Elements;
 use crate::structures::beam::{Beam, Section};
 use crate::structures::beam_sections::BeamLine;
 use crate::structures::modal::FlexibleBeam;
@@ -19,7 +19,7 @@ const OF_ELEMENT: [f64; 3] = [0.0, 0.5, 1.0];
 
 /// Stresses along the outer fibres of sections of a beam, from its start to its end.
 #[derive(Clone, Debug)]
-pub(crate) struct BeamFibres {
+pub struct BeamFibres {
     /// The unknowns of nodes that the stresses depend on; none if they depend on all elastic coordinates.
     unknowns: Option<Arc<[usize]>>,
     /// By section, the stress along each outer fibre \[Pa\]. Empty for a section without size.
@@ -28,7 +28,7 @@ pub(crate) struct BeamFibres {
 
 impl BeamFibres {
     /// Whether stresses are known: the section has a size.
-    pub(crate) fn are_known(&self) -> bool {
+    pub fn are_known(&self) -> bool {
         !self.sections.is_empty()
     }
 
@@ -49,7 +49,7 @@ impl BeamFibres {
 
     /// Those of a beam of a structure at rest, over the displacements and rotations of its nodes
     /// ([`BeamLine::at_rest`]); without the squares of displacements unless `von_karman`.
-    pub(crate) fn at_rest(beam: Beam<f64>, von_karman: bool) -> Self {
+    pub fn at_rest(beam: Beam<f64>, von_karman: bool) -> Self {
         let mut all = Self::of_line(BeamLine::at_rest(beam));
         if !von_karman {
             let forms = all.sections.iter_mut().flatten();
@@ -60,7 +60,7 @@ impl BeamFibres {
 
     /// The largest |σ| along the outer fibres of each section \[Pa\], at the elastic coordinates or unknowns of
     /// the nodes `q` of the body.
-    pub(crate) fn largest(&self, q: &[f64]) -> Vec<f64> {
+    pub fn largest(&self, q: &[f64]) -> Vec<f64> {
         let own: Vec<f64>;
         let q = match &self.unknowns {
             Some(unknowns) => {
@@ -78,7 +78,7 @@ impl BeamFibres {
 }
 
 /// The larger of two values; NaN if one of them is.
-pub(crate) fn larger(a: f64, b: f64) -> f64 {
+pub fn larger(a: f64, b: f64) -> f64 {
     if a.is_nan() || a > b { a } else { b }
 }
 

@@ -4,7 +4,7 @@ use std::ops::Range;
 
 /// Which part of the entry at a pointer is at fault.
 #[derive(Clone, Debug, PartialEq)]
-pub(super) enum Part {
+pub enum Part {
     /// The key.
     Key,
     /// The value.
@@ -17,7 +17,7 @@ pub(super) enum Part {
 
 /// A fault without its place in the file.
 #[derive(Clone, Debug)]
-pub(super) struct Finding {
+pub struct Finding {
     pub pointer: String,
     pub part: Part,
     pub found: String,
@@ -27,7 +27,7 @@ pub(super) struct Finding {
 
 impl Finding {
     /// A fault of the value at `pointer`.
-    pub(crate) fn new(
+    pub fn new(
         pointer: impl Into<String>,
         found: impl Into<String>,
         expected: impl Into<String>,
@@ -42,7 +42,7 @@ impl Finding {
     }
 
     /// The same fault, of the key.
-    pub(crate) fn of_key(self) -> Self {
+    pub fn of_key(self) -> Self {
         Self {
             part: Part::Key,
             ..self
@@ -50,7 +50,7 @@ impl Finding {
     }
 
     /// The same fault with advice.
-    pub(crate) fn hint(self, hint: Option<String>) -> Self {
+    pub fn hint(self, hint: Option<String>) -> Self {
         Self { hint, ..self }
     }
 }

@@ -9,7 +9,6 @@ use super::pointer::join;
 use crate::math::Dual;
 use crate::model::{Joint, JointKind, RigidBody};
 use crate::system::failure::AssemblyFailure;
-use crate::system::kkt::SaddlePoint;
 use crate::system::placement::length_scale;
 use crate::system::{Numbering, dead_points, initial, loads, rank, redundancy};
 
@@ -150,8 +149,7 @@ pub(super) fn unstarted(problem: &Problem) -> Option<Finding> {
 pub(super) fn unassembled(problem: &Problem) -> Option<Finding> {
     let model = problem.scene(&problem.start()).model;
     let numbering = Numbering::new(&model);
-    let mut saddle = SaddlePoint::new(&model, &numbering);
-    let failure = initial::solve(&model, &numbering, &mut saddle).err()?;
+    let failure = initial::consistent(&model, &numbering).err()?;
     // Round-off in place of an inertia spoils the assembly, too.
     let spins = rank::spinning_without_inertia(&model);
     Some(cannot_assemble(&spins.unwrap_or(failure)))

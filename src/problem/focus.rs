@@ -5,7 +5,7 @@ use crate::lower::{Lowering, Seen};
 
 /// The parts of a problem's scenes that are kept.
 #[derive(Clone, Debug)]
-pub(crate) struct Focus {
+pub struct Focus {
     /// Kept bodies and functions.
     pub seen: Seen,
     /// Bodies of the whole scenes, those of elastic coordinates among them.
@@ -18,7 +18,7 @@ impl Problem {
     /// The problem reduced to the functions `asked` and to the bodies on which these or the event
     /// depend. Its functions are renumbered; other functions, also objective and constraints, are
     /// dropped. `None` if nothing is requested, or nothing can or may be removed.
-    pub(crate) fn focused(&self, asked: &[usize]) -> Option<Self> {
+    pub fn focused(&self, asked: &[usize]) -> Option<Self> {
         if asked.is_empty() || self.lowering.is_none() || self.focus.is_some() {
             return None;
         }
@@ -63,7 +63,7 @@ impl Problem {
     }
 
     /// The problem reduced to objective and constraints; see [`Problem::focused`].
-    pub(crate) fn for_optimisation(&self) -> Option<Self> {
+    pub fn for_optimisation(&self) -> Option<Self> {
         let objective = self.objective?.function;
         let constraints = self.constraints.iter().map(|own| own.function);
         let asked: Vec<usize> = constraints.chain([objective]).collect();
@@ -71,7 +71,7 @@ impl Problem {
     }
 
     /// The problem with all bodies, if some were removed; it keeps its functions.
-    pub(crate) fn whole(&self) -> Option<Self> {
+    pub fn whole(&self) -> Option<Self> {
         let focus = self.focus.as_ref()?;
         let bodies = focus.bodies;
         if focus.seen.bodies.len() == bodies {

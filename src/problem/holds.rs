@@ -5,17 +5,17 @@
 //! which only the average is held are held there by single nodes. A body with a reduced basis has its axes
 //! clamped at the first edge that is rigid.
 
-use super::schema::Document;
-use super::schema::elements::{ElementBasis, ElementFrame, Elements, Held};
-use super::schema::joints::{Joint, JointPlace};
-use super::schema::mechanics::Point;
 use crate::math::Vec3;
+use crate::schema::Document;
+use crate::schema::elements::{ElementBasis, ElementFrame, Elements, Held};
+use crate::schema::joints::{Joint, JointPlace};
+use crate::schema::mechanics::Point;
 use crate::structures::floating::FrameNodes;
 use crate::structures::mesh::Mesh;
 use std::collections::BTreeSet;
 
 /// The nodes of a set of nodes or of an edge.
-pub(crate) fn nodes_of(mesh: &Mesh, set: &str) -> Option<Vec<usize>> {
+pub fn nodes_of(mesh: &Mesh, set: &str) -> Option<Vec<usize>> {
     let nodes = mesh.node_sets.get(set).cloned();
     nodes.or_else(|| mesh.edge_sets.get(set).map(|edges| edges.concat()))
 }

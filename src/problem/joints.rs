@@ -1,20 +1,20 @@
 //! Makes the joints and drives of a model from those of a file.
 
 use super::placement::{Assembly, GROUND, split_location};
-use super::quantity::Quantity;
-use super::schema::Document;
-use super::schema::drives::{Drive as WrittenDrive, TimeFunction as Written};
-use super::schema::joints::{Joint as WrittenJoint, JointPlace};
-use super::schema::loads::Interpolation;
-use super::schema::mechanics::Shape;
 use crate::math::scalar::{length, unit};
 use crate::math::{Scalar, Vec3};
 use crate::model::{
     DegreeOfFreedom, Drive, Fit, Joint, JointFrame, JointKind, Smoothness, TimeFunction,
 };
+use crate::quantity::Quantity;
+use crate::schema::Document;
+use crate::schema::drives::{Drive as WrittenDrive, TimeFunction as Written};
+use crate::schema::joints::{Joint as WrittenJoint, JointPlace};
+use crate::schema::loads::Interpolation;
+use crate::schema::mechanics::Shape;
 
 /// The joints of a checked document with their drives, in its order.
-pub(crate) fn joints<S: Scalar>(document: &Document, assembly: &Assembly<S>) -> Vec<Joint<S>> {
+pub fn joints<S: Scalar>(document: &Document, assembly: &Assembly<S>) -> Vec<Joint<S>> {
     let one = |(name, written): (&String, &WrittenJoint)| Joint {
         drives: drives(document, assembly, name),
         ..joint(document, assembly, name, written)
@@ -179,6 +179,6 @@ fn course<S: Scalar>(assembly: &Assembly<S>, written: Written) -> TimeFunction<S
 }
 
 /// Whether a joint of this kind may act on a point mass: it needs no extent and no rotation.
-pub(crate) fn holds_points(kind: JointKind) -> bool {
+pub fn holds_points(kind: JointKind) -> bool {
     matches!(kind, JointKind::Spherical | JointKind::Rod)
 }

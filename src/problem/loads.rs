@@ -2,24 +2,24 @@
 
 use super::elements::prepared;
 use super::placement::{Assembly, GROUND};
-use super::prepared::Prepared;
-use super::quantity::Vector;
-use super::schema::Document;
-use super::schema::joints::Joint;
-use super::schema::loads::{
-    Axes as WrittenAxes, Interpolation, Load as WrittenLoad, Motion, TimeFunction as Written,
-};
 use crate::math::scalar::unit;
 use crate::math::{Scalar, Vec3};
 use crate::model::{
     Axes, DegreeOfFreedom, DistributedLoad, Load, LoadKind, Smoothness, Spread, TimeFunction,
+};
+use crate::prepared::Prepared;
+use crate::quantity::Vector;
+use crate::schema::Document;
+use crate::schema::joints::Joint;
+use crate::schema::loads::{
+    Axes as WrittenAxes, Interpolation, Load as WrittenLoad, Motion, TimeFunction as Written,
 };
 use crate::structures::loads::edge_shares;
 use std::collections::BTreeMap;
 use std::sync::Arc;
 
 /// The loads of a checked document, in its order.
-pub(crate) fn loads<S: Scalar>(document: &Document, assembly: &Assembly<S>) -> Vec<Load<S>> {
+pub fn loads<S: Scalar>(document: &Document, assembly: &Assembly<S>) -> Vec<Load<S>> {
     let one = |(name, written): (&String, &WrittenLoad)| Load {
         name: name.clone(),
         kind: kind(document, assembly, written),
@@ -32,7 +32,7 @@ fn kind<S: Scalar>(
     assembly: &Assembly<S>,
     written: &WrittenLoad,
 ) -> LoadKind<S> {
-    let get = |quantity: &super::quantity::Quantity| assembly.quantity(quantity);
+    let get = |quantity: &crate::quantity::Quantity| assembly.quantity(quantity);
     let body = |name: &str| {
         assembly
             .index(name)
@@ -185,7 +185,7 @@ fn axes(written: WrittenAxes) -> Axes {
 }
 
 fn course<S: Scalar>(assembly: &Assembly<S>, written: Written) -> TimeFunction<S> {
-    let get = |quantity: &super::quantity::Quantity| assembly.quantity(quantity);
+    let get = |quantity: &crate::quantity::Quantity| assembly.quantity(quantity);
     match written {
         Written::Constant(value) => TimeFunction::constant(get(value)),
         Written::Harmonic([amplitude, frequency, phase]) => TimeFunction::Harmonic {
@@ -221,7 +221,7 @@ fn dof(joint: &Joint, motion: Option<Motion>) -> Option<DegreeOfFreedom> {
 }
 
 /// The degree of freedom of a name in the file.
-pub(crate) fn named(motion: Motion) -> DegreeOfFreedom {
+pub fn named(motion: Motion) -> DegreeOfFreedom {
     match motion {
         Motion::Turn => DegreeOfFreedom::Rotation,
         Motion::Slide => DegreeOfFreedom::Translation,

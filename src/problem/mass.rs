@@ -1,12 +1,12 @@
 //! Mass properties of bodies.
 
-use super::quantity::{Quantity, vector};
-use super::schema::mechanics::{Body, Inertia, Shape};
 use crate::math::{Mat3, Scalar, Vec3};
+use crate::quantity::{Quantity, vector};
+use crate::schema::mechanics::{Body, Inertia, Shape};
 use std::f64::consts::PI;
 
 /// Mass, centre of mass and inertia of a body.
-pub(crate) struct MassProperties<S> {
+pub struct MassProperties<S> {
     /// Mass \[kg\].
     pub mass: S,
     /// Centre of mass from the origin of the body's axes \[m\].
@@ -16,7 +16,7 @@ pub(crate) struct MassProperties<S> {
 }
 
 /// Mass properties at the design `x`. Missing entries of a checked file are zero.
-pub(crate) fn mass_properties<S: Scalar>(body: &Body, x: &[S]) -> MassProperties<S> {
+pub fn mass_properties<S: Scalar>(body: &Body, x: &[S]) -> MassProperties<S> {
     let number = |quantity: &Option<Quantity>| quantity.map_or(S::zero(), |q| q.get(x));
     if body.is_flexible() {
         // Those of a flexible body follow from its shapes; its places are from its origin.
@@ -52,7 +52,7 @@ fn matrix<S: Scalar>(inertia: &Inertia, x: &[S]) -> Mat3<S> {
 }
 
 /// Volume of a shape \[m³\].
-pub(crate) fn volume<S: Scalar>(shape: &Shape, x: &[S]) -> S {
+pub fn volume<S: Scalar>(shape: &Shape, x: &[S]) -> S {
     match shape {
         Shape::Box { size } => size[0].get(x) * size[1].get(x) * size[2].get(x),
         Shape::Cylinder { radius, length } | Shape::Rod { length, radius } => {

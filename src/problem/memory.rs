@@ -4,7 +4,7 @@ use std::path::Path;
 
 /// Memory that this process can still allocate \[bytes\]: limited by the machine and by the control
 /// groups of the process. `None` if it is unknown.
-pub(crate) fn available() -> Option<usize> {
+pub fn available() -> Option<usize> {
     let machine = std::fs::read_to_string("/proc/meminfo").ok();
     let machine = machine.and_then(|text| of_machine(&text));
     let groups = std::fs::read_to_string("/proc/self/cgroup").unwrap_or_default();

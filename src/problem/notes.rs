@@ -1,14 +1,14 @@
 //! What a run says of its input: what is left out, used though it does not fit, or stiffer than it looks.
 
-use super::schema::Document;
 use super::{Problem, elements, holds, mass};
 use crate::model::rigid_body::{ROUNDING, excess_of_inertia};
+use crate::schema::Document;
 use crate::system::left_out;
 
 impl Problem {
     /// Redundant rows of joints, inertias of no solid within the tolerance of the input, and edges that axes alone make
     /// rigid.
-    pub(crate) fn notes_of_input(&self) -> Vec<String> {
+    pub fn notes_of_input(&self) -> Vec<String> {
         let mut notes = left_out::told(&self.redundant);
         notes.extend(self.inertias());
         notes.extend(edges(&self.written));

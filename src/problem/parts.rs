@@ -1,15 +1,15 @@
 //! Beams and lumped masses of a body of elements, from a file.
 
-use super::prepared::{PartSource, Prepared, WrittenPart};
-use super::quantity::Quantity;
-use super::schema::Document;
-use super::schema::elements::Elements;
-use super::schema::structures::{Direction, Mesh, Structure as Written};
-use super::statics::mesh::{Part as MeshPart, panel_elements};
+use super::statics::mesh::Part as MeshPart;
 use super::statics::properties::{section, section_by, slots};
 use crate::math::scalar::lift3;
 use crate::math::{Scalar, Vec3};
 use crate::model::finite::Part;
+use crate::prepared::{PartSource, Prepared, WrittenPart};
+use crate::quantity::Quantity;
+use crate::schema::Document;
+use crate::schema::elements::Elements;
+use crate::schema::structures::{Direction, Mesh, Structure as Written};
 use crate::structures::beam::Beam;
 use crate::structures::beam_sections::BeamLine;
 use crate::structures::floating::{NodeMotion, Surface, normal};
@@ -20,7 +20,7 @@ use crate::structures::structure::Structure;
 
 /// The nodes of the beams of a line along a panel.
 fn line(mesh: &Mesh, along: Direction, at: f64) -> Vec<[usize; 3]> {
-    let Some([nx, ny]) = panel_elements(mesh) else {
+    let Some([nx, ny]) = mesh.panel_elements() else {
         return Vec::new();
     };
     let columns = 2 * nx + usize::from(!matches!(mesh, Mesh::Cylinder { .. }));
@@ -152,11 +152,7 @@ fn beam<S: Scalar>(
 }
 
 /// The beams of a set, of a stiffener, or all: their numbers among the parts of the body.
-pub(crate) fn chosen(
-    elements: &Elements,
-    prepared: &Prepared,
-    name: Option<&String>,
-) -> Vec<usize> {
+pub fn chosen(elements: &Elements, prepared: &Prepared, name: Option<&String>) -> Vec<usize> {
     let all = 0..prepared.mesh.beams.len();
     let Some(name) = name else {
         return all.collect();
@@ -190,7 +186,7 @@ pub(super) fn lines(
 }
 
 /// The sections of these beams at the design `x`.
-pub(crate) fn line_of<S: Scalar>(
+pub fn line_of<S: Scalar>(
     document: &Document,
     elements: &Elements,
     prepared: &Prepared,

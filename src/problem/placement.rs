@@ -2,23 +2,23 @@
 
 use super::elements;
 use super::mass::mass_properties;
-use super::quantity::{Quantity, Vector, vector};
-use super::schema::Document;
-use super::schema::joints::{Axis, Ends};
-use super::schema::mechanics::{Location, Point};
 use crate::math::rotation::{Quat, compose, from_axis_angle, matrix};
 use crate::math::scalar::lift3;
 use crate::math::{Mat3, Scalar, Vec3};
+use crate::quantity::{Quantity, Vector, vector};
+use crate::schema::Document;
+use crate::schema::joints::{Axis, Ends};
+use crate::schema::mechanics::{Location, Point};
 
 /// Message of a failed look-up. A checked file has all names.
 const CHECKED: &str = "names are checked when a problem is read";
 
 /// The name of the body that does not move.
-pub(crate) const GROUND: &str = "ground";
+pub const GROUND: &str = "ground";
 
 /// Pose of a body.
 #[derive(Clone, Copy, Debug)]
-pub(crate) struct Pose<S> {
+pub struct Pose<S> {
     /// Origin of the body's axes, ground axes \[m\].
     pub origin: Vec3<S>,
     /// Centre of mass from the origin, body axes \[m\].
@@ -41,13 +41,13 @@ impl<S: Scalar> Pose<S> {
     }
 
     /// Centre of mass in ground axes \[m\].
-    pub(crate) fn position(&self) -> Vec3<S> {
+    pub fn position(&self) -> Vec3<S> {
         self.origin + self.rotation * self.centre
     }
 }
 
 /// Splits `"body.point"` into body and point. Without a dot there is no point.
-pub(crate) fn split_location(text: &str) -> (&str, Option<&str>) {
+pub fn split_location(text: &str) -> (&str, Option<&str>) {
     match text.split_once('.') {
         Some((body, point)) => (body, Some(point)),
         None => (text, None),
@@ -55,7 +55,7 @@ pub(crate) fn split_location(text: &str) -> (&str, Option<&str>) {
 }
 
 /// The bodies relative to which a body is placed.
-pub(crate) fn placed_by<'a>(document: &'a Document, body: &str) -> impl Iterator<Item = &'a str> {
+pub fn placed_by<'a>(document: &'a Document, body: &str) -> impl Iterator<Item = &'a str> {
     let place = document.bodies.get(body).map(|body| &body.place);
     let at = place.and_then(|place| match &place.at {
         Some(Location::Named(name)) => Some(split_location(name).0),
@@ -69,7 +69,7 @@ pub(crate) fn placed_by<'a>(document: &'a Document, body: &str) -> impl Iterator
 ///
 /// # Errors
 /// The names along a cycle; the last is the first again.
-pub(crate) fn placement_order(document: &Document) -> Result<Vec<usize>, Vec<String>> {
+pub fn placement_order(document: &Document) -> Result<Vec<usize>, Vec<String>> {
     /// Visits `name` after the bodies that it depends on; `path` holds the unfinished names.
     fn visit(
         document: &Document,
@@ -103,7 +103,7 @@ pub(crate) fn placement_order(document: &Document) -> Result<Vec<usize>, Vec<Str
 }
 
 /// All bodies of a checked document at the start of the design `x`.
-pub(crate) struct Assembly<'a, S> {
+pub struct Assembly<'a, S> {
     document: &'a Document,
     x: &'a [S],
     /// Poses in the order of the file.
@@ -112,7 +112,7 @@ pub(crate) struct Assembly<'a, S> {
 
 impl<'a, S: Scalar> Assembly<'a, S> {
     /// Places the bodies in `order`.
-    pub(crate) fn new(document: &'a Document, order: &[usize], x: &'a [S]) -> Self {
+    pub fn new(document: &'a Document, order: &[usize], x: &'a [S]) -> Self {
         let mut assembly = Self {
             document,
             x,
@@ -158,12 +158,12 @@ impl<'a, S: Scalar> Assembly<'a, S> {
     }
 
     /// Index of a body; `None` is ground.
-    pub(crate) fn index(&self, body: &str) -> Option<usize> {
+    pub fn index(&self, body: &str) -> Option<usize> {
         (body != GROUND).then(|| self.document.bodies.get_index_of(body).expect(CHECKED))
     }
 
     /// Pose of a body or ground.
-    pub(crate) fn pose(&self, body: &str) -> Pose<S> {
+    pub fn pose(&self, body: &str) -> Pose<S> {
         self.index(body)
             .map_or(Pose::ground(), |index| self.poses[index])
     }
@@ -187,7 +187,7 @@ impl<'a, S: Scalar> Assembly<'a, S> {
     }
 
     /// A point of a body or of ground, from the origin of its axes \[m\].
-    pub(crate) fn in_body(&self, body: &str, point: &Point) -> Vec3<S> {
+    pub fn in_body(&self, body: &str, point: &Point) -> Vec3<S> {
         match point {
             Point::Named(name) => self.point(body, name),
             Point::Coordinates(point) => vector(point, self.x),
@@ -195,27 +195,27 @@ impl<'a, S: Scalar> Assembly<'a, S> {
     }
 
     /// A named point in ground axes \[m\].
-    pub(crate) fn named(&self, text: &str) -> Vec3<S> {
+    pub fn named(&self, text: &str) -> Vec3<S> {
         let (body, _) = split_location(text);
         let pose = self.pose(body);
         pose.origin + pose.rotation * self.named_in_body(text)
     }
 
     /// A named point from the origin of the axes of its body \[m\].
-    pub(crate) fn named_in_body(&self, text: &str) -> Vec3<S> {
+    pub fn named_in_body(&self, text: &str) -> Vec3<S> {
         let (body, point) = split_location(text);
         point.map_or(Vec3::zeros(), |point| self.point(body, point))
     }
 
     /// A point given by its ground coordinates at the start, from the origin of the axes of a body
     /// or of ground \[m\].
-    pub(crate) fn at_ground(&self, body: &str, point: &Vector) -> Vec3<S> {
+    pub fn at_ground(&self, body: &str, point: &Vector) -> Vec3<S> {
         let pose = self.pose(body);
         pose.rotation.tr_mul(&(self.ground(point) - pose.origin))
     }
 
     /// An end of a rod or spring, from the centre of mass of its body (or from the origin) \[m\].
-    pub(crate) fn end(&self, between: &[String; 2], at: &Ends, side: usize) -> Vec3<S> {
+    pub fn end(&self, between: &[String; 2], at: &Ends, side: usize) -> Vec3<S> {
         let name = &between[side];
         let point = match at {
             Ends::Each(pair) => self.in_body(name, [&pair.a, &pair.b][side]),
@@ -225,17 +225,17 @@ impl<'a, S: Scalar> Assembly<'a, S> {
     }
 
     /// Value of a number of the file at this design.
-    pub(crate) fn quantity(&self, quantity: &Quantity) -> S {
+    pub fn quantity(&self, quantity: &Quantity) -> S {
         quantity.get(self.x)
     }
 
     /// Value of a vector of the file at this design.
-    pub(crate) fn ground(&self, components: &Vector) -> Vec3<S> {
+    pub fn ground(&self, components: &Vector) -> Vec3<S> {
         vector(components, self.x)
     }
 
     /// Axis of a joint in ground axes; its length is that in the file.
-    pub(crate) fn axis(&self, axis: &Axis) -> Vec3<S> {
+    pub fn axis(&self, axis: &Axis) -> Vec3<S> {
         match axis {
             Axis::Ground(axis) => vector(axis, self.x),
             Axis::OfBody(of) => self.pose(&of.body).rotation * vector(&of.axis, self.x),

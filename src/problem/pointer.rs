@@ -3,13 +3,13 @@
 use serde_json::Value;
 
 /// The pointer to `key` below `pointer`.
-pub(crate) fn join(pointer: &str, key: impl std::fmt::Display) -> String {
+pub fn join(pointer: &str, key: impl std::fmt::Display) -> String {
     let key = key.to_string().replace('~', "~0").replace('/', "~1");
     format!("{pointer}/{key}")
 }
 
 /// The keys along a pointer.
-pub(crate) fn keys(pointer: &str) -> Vec<String> {
+pub fn keys(pointer: &str) -> Vec<String> {
     pointer
         .split('/')
         .skip(1)
@@ -18,14 +18,14 @@ pub(crate) fn keys(pointer: &str) -> Vec<String> {
 }
 
 /// True if `pointer` is `above` or below it.
-pub(crate) fn is_below(pointer: &str, above: &str) -> bool {
+pub fn is_below(pointer: &str, above: &str) -> bool {
     pointer
         .strip_prefix(above)
         .is_some_and(|rest| rest.is_empty() || rest.starts_with('/'))
 }
 
 /// Pointers to every value of a document except its root.
-pub(crate) fn all(value: &Value) -> Vec<String> {
+pub fn all(value: &Value) -> Vec<String> {
     fn collect(value: &Value, pointer: &str, list: &mut Vec<String>) {
         if !pointer.is_empty() {
             list.push(pointer.to_owned());
@@ -59,10 +59,7 @@ fn distance(wanted: &str, name: &str) -> Option<usize> {
 }
 
 /// The name nearest to `wanted`, if one is near.
-pub(crate) fn nearest<'a>(
-    wanted: &str,
-    names: impl IntoIterator<Item = &'a str>,
-) -> Option<&'a str> {
+pub fn nearest<'a>(wanted: &str, names: impl IntoIterator<Item = &'a str>) -> Option<&'a str> {
     names
         .into_iter()
         .filter_map(|name| Some((distance(wanted, name)?, name)))
@@ -72,7 +69,7 @@ pub(crate) fn nearest<'a>(
 
 /// The pointer nearest to `wanted`, if one is near: each key is near its counterpart, or keys in
 /// between are missing.
-pub(crate) fn nearest_pointer<'a>(
+pub fn nearest_pointer<'a>(
     wanted: &str,
     pointers: impl Iterator<Item = &'a str> + Clone,
 ) -> Option<&'a str> {
@@ -99,7 +96,7 @@ pub(crate) fn nearest_pointer<'a>(
 }
 
 /// Advice about a wrong name: the nearest valid one, or all; `what` is their kind.
-pub(crate) fn advice<'a>(
+pub fn advice<'a>(
     wanted: &str,
     what: &str,
     names: impl IntoIterator<Item = &'a str>,

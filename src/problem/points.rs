@@ -8,14 +8,14 @@ use super::flexible::{HeldPlace, Holder};
 use super::joints::{at, holds_points};
 use super::placement::Assembly;
 use super::pointer::join;
-use super::quantity::Quantity;
 use super::scene;
-use super::schema::Document;
-use super::schema::joints::Joint;
-use super::schema::loads::Load;
-use super::schema::mechanics::Shape;
 use crate::math::scalar::lift3;
 use crate::math::{Dual, Scalar, Vec3};
+use crate::quantity::Quantity;
+use crate::schema::Document;
+use crate::schema::joints::Joint;
+use crate::schema::loads::Load;
+use crate::schema::mechanics::Shape;
 use crate::system::placement::length_scale;
 
 /// Two points are the same up to this distance, relative to the length scale.

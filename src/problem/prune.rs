@@ -2,7 +2,7 @@
 
 use super::finding::Finding;
 use super::pointer::{keys, nearest};
-use super::schema::VERSION;
+use crate::schema::VERSION;
 use serde_json::{Map, Value, json};
 use std::collections::HashSet;
 
@@ -29,17 +29,17 @@ pub(super) struct Damage {
 
 impl Damage {
     /// Whether nothing was removed.
-    pub(crate) fn is_empty(&self) -> bool {
+    pub fn is_empty(&self) -> bool {
         self.sections.is_empty() && self.entries.is_empty()
     }
 
     /// Whether a part of a section was removed.
-    pub(crate) fn touches(&self, section: &str) -> bool {
+    pub fn touches(&self, section: &str) -> bool {
         self.sections.contains(section) || self.entries.iter().any(|(own, _)| own == section)
     }
 
     /// Whether the entry of this name was removed.
-    pub(crate) fn holds(&self, section: &str, name: &str) -> bool {
+    pub fn holds(&self, section: &str, name: &str) -> bool {
         let entry = (section.to_owned(), name.to_owned());
         self.sections.contains(section) || self.entries.contains(&entry)
     }

@@ -15,7 +15,6 @@ use super::placement::placement_order;
 use super::pointer::join;
 use super::points;
 use super::prune::prune;
-use super::schema::{self, Document};
 use super::source::{Duplicate, Source};
 use super::statics::expand::expand;
 use super::statics::per_thickness;
@@ -30,6 +29,7 @@ use crate::lower::{self, Lowering};
 use crate::math::Dual;
 use crate::model::Model;
 use crate::optimiser::Method;
+use crate::schema::{self, Document};
 use crate::structures::quality::MeshFault;
 use crate::system::redundancy;
 use serde_json::Value;
@@ -300,14 +300,9 @@ fn twice(duplicate: &Duplicate) -> Finding {
 
 /// Deserialises a document.
 fn deserialise(document: &Value) -> Result<Document, Finding> {
-    let read = serde_path_to_error::deserialize(document);
-    let mut written: Document = read.map_err(|error| {
-        let pointer: String = error
-            .path()
-            .iter()
-            .map(|segment| join("", segment))
-            .collect();
-        Finding::new(pointer, error.inner().to_string(), "what the schema says")
+    let mut written = schema::read(document).map_err(|(path, found)| {
+        let pointer: String = path.iter().map(|segment| join("", segment)).collect();
+        Finding::new(pointer, found, "what the schema says")
     })?;
     holds::find_welds(&mut written);
     Ok(written)

@@ -1,11 +1,11 @@
 //! Reduced bases of shells, and shells that are rigid, from a file.
 
 use super::pointer::join;
-use super::prepared::{Prepared, ReducedBody};
-use super::schema::Document;
-use super::schema::elements::{ElementBasis, ReducedKeys};
-use super::schema::mechanics::Body;
 use crate::model::finite::{ElementMesh, FiniteElements};
+use crate::prepared::{Prepared, ReducedBody};
+use crate::schema::Document;
+use crate::schema::elements::{ElementBasis, ReducedKeys};
+use crate::schema::mechanics::Body;
 use crate::structures::floating::{NodeMotion, PointMotion};
 use crate::structures::modes::PencilFailure;
 use crate::system::reduction::{ModeChoice, ReducedBasis, Request, Tie, project, reduced_basis};

@@ -1,14 +1,9 @@
 //! The map from a design to a scene, analytic in the design.
 
 use super::flexible::{FlexibleBodies, HeldPlace};
-use super::functions::FunctionBuilder;
 use super::mass::mass_properties;
 use super::placement::Assembly;
-use super::quantity::{Vector, vector};
-use super::schema::Document;
-use super::schema::flexible::Start;
-use super::schema::loads::Load;
-use super::schema::mechanics::{Body, Shape};
+use super::quantities::FunctionBuilder;
 use super::start_rates;
 use super::starts::Starts;
 use crate::functions::{Function, Scene, TerminalEvent};
@@ -16,21 +11,26 @@ use crate::math::rotation::matrix;
 use crate::math::scalar::lift3;
 use crate::math::{Scalar, Vec3};
 use crate::model::{Mobility, Model, RigidBody};
+use crate::quantity::{Vector, vector};
+use crate::schema::Document;
+use crate::schema::flexible::Start;
+use crate::schema::loads::Load;
+use crate::schema::mechanics::{Body, Shape};
 use crate::system::Numbering;
 use crate::system::equilibrium::settle;
 use crate::system::failure::AssemblyFailure;
 use crate::system::placement::guess;
 
 /// Default gravity \[m/s²\].
-pub(crate) const GRAVITY: [f64; 3] = [0.0, -9.81, 0.0];
+pub const GRAVITY: [f64; 3] = [0.0, -9.81, 0.0];
 
 /// The scene of a checked document at the design `x`; bodies are placed in `order`.
-pub(crate) fn scene<S: Scalar>(document: &Document, order: &[usize], x: &[S]) -> Scene<S> {
+pub fn scene<S: Scalar>(document: &Document, order: &[usize], x: &[S]) -> Scene<S> {
     with_places(document, order, x).0
 }
 
 /// The same, with the places that joints, loads and functions hold on flexible bodies.
-pub(crate) fn with_places<S: Scalar>(
+pub fn with_places<S: Scalar>(
     document: &Document,
     order: &[usize],
     x: &[S],
@@ -190,7 +190,7 @@ fn written_velocity<S: Scalar>(
 
 /// By body: its own velocities, if the file gives them and starts of joints may replace them; see
 /// [`written_velocity`].
-pub(crate) fn own_velocities(document: &Document, x: &[f64]) -> Vec<Option<[Vec3<f64>; 2]>> {
+pub fn own_velocities(document: &Document, x: &[f64]) -> Vec<Option<[Vec3<f64>; 2]>> {
     let follows = document.start != Start::Given && !document.drives.is_empty();
     let started = follows || (document.joints.values()).any(|joint| joint.start().is_some());
     let own = |body: &Body| {

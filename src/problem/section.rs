@@ -1,14 +1,14 @@
 //! From the cross sections of a file to those of beams.
 
 use super::Problem;
-use super::quantity::Quantity;
-use super::schema::section::Section as Written;
 use crate::math::Scalar;
+use crate::quantity::Quantity;
+use crate::schema::section::Section as Written;
 use crate::structures::beam::{Section, SectionFault, SectionValues};
 
 impl Problem {
     /// The first body whose section cannot be built at the design `x`, and why.
-    pub(crate) fn impossible_section(&self, x: &[f64]) -> Option<(String, SectionFault)> {
+    pub fn impossible_section(&self, x: &[f64]) -> Option<(String, SectionFault)> {
         self.written.bodies.iter().find_map(|(name, body)| {
             let of_beam = body
                 .beam
@@ -24,7 +24,7 @@ impl Problem {
 }
 
 /// The section at the design `x`; `given` makes the values of given stiffnesses.
-pub(crate) fn section<G, S: Scalar>(
+pub fn section<G, S: Scalar>(
     written: &Written<G>,
     x: &[S],
     given: impl FnOnce(&G) -> SectionValues<S>,
@@ -33,7 +33,7 @@ pub(crate) fn section<G, S: Scalar>(
 }
 
 /// The section with the values that `get` gives to quantities.
-pub(crate) fn section_by<G, S: Scalar>(
+pub fn section_by<G, S: Scalar>(
     written: &Written<G>,
     get: impl Fn(&Quantity) -> S,
     given: impl FnOnce(&G) -> SectionValues<S>,

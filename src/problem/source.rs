@@ -6,7 +6,7 @@ use std::ops::Range;
 
 /// A valid JSON text with the places of its keys and values.
 #[derive(Clone, Debug, Default)]
-pub(crate) struct Source {
+pub struct Source {
     text: String,
     spans: HashMap<String, Span>,
     /// Keys that occur twice in an object.
@@ -15,7 +15,7 @@ pub(crate) struct Source {
 
 /// A key that occurs twice in an object.
 #[derive(Clone, Debug, PartialEq)]
-pub(crate) struct Duplicate {
+pub struct Duplicate {
     /// Pointer to the entry.
     pub pointer: String,
     /// The key.
@@ -35,7 +35,7 @@ struct Span {
 
 impl Source {
     /// A text without an index: it gives only the places of bytes.
-    pub(crate) fn plain(text: &str) -> Self {
+    pub fn plain(text: &str) -> Self {
         Self {
             text: text.to_owned(),
             ..Self::default()
@@ -43,7 +43,7 @@ impl Source {
     }
 
     /// Indexes a text that is valid JSON.
-    pub(crate) fn index(text: &str) -> Self {
+    pub fn index(text: &str) -> Self {
         let mut scanner = Scanner {
             source: Self::plain(text),
             at: 0,
@@ -53,7 +53,7 @@ impl Source {
     }
 
     /// Line and column (in characters) of a byte, both from 1.
-    pub(crate) fn place(&self, byte: usize) -> (usize, usize) {
+    pub fn place(&self, byte: usize) -> (usize, usize) {
         let before = &self.text[..byte.min(self.text.len())];
         let line = before.matches('\n').count() + 1;
         let start = before.rfind('\n').map_or(0, |newline| newline + 1);
@@ -61,24 +61,24 @@ impl Source {
     }
 
     /// A line of the text, from 1.
-    pub(crate) fn line(&self, line: usize) -> &str {
+    pub fn line(&self, line: usize) -> &str {
         self.text.lines().nth(line.saturating_sub(1)).unwrap_or("")
     }
 
     /// The first line of a part of the text.
-    pub(crate) fn slice(&self, bytes: Range<usize>) -> &str {
+    pub fn slice(&self, bytes: Range<usize>) -> &str {
         let piece = self.text.get(bytes).unwrap_or("");
         piece.lines().next().unwrap_or("")
     }
 
     /// Bytes of the key at a pointer; of the value if it is an item of a list.
-    pub(crate) fn key(&self, pointer: &str) -> Option<Range<usize>> {
+    pub fn key(&self, pointer: &str) -> Option<Range<usize>> {
         let span = self.span(pointer)?;
         Some(span.key.clone().unwrap_or_else(|| span.value.clone()))
     }
 
     /// Bytes of the value at a pointer.
-    pub(crate) fn value(&self, pointer: &str) -> Option<Range<usize>> {
+    pub fn value(&self, pointer: &str) -> Option<Range<usize>> {
         self.span(pointer).map(|span| span.value.clone())
     }
 

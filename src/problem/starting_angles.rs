@@ -2,10 +2,10 @@
 
 use super::joints::drives;
 use super::placement::{Assembly, GROUND};
-use super::schema::Document;
-use super::schema::joints::Joint;
 use crate::math::{Scalar, Vec3};
 use crate::model::DegreeOfFreedom;
+use crate::schema::Document;
+use crate::schema::joints::Joint;
 use std::collections::{BTreeMap, VecDeque};
 
 /// The angle with which a joint starts, by the file or a drive \[rad\].

@@ -14,14 +14,14 @@
 
 use super::hinge::{Hinge, Move, hinge, place};
 use super::placement::Assembly;
-use super::quantity::Quantity;
-use super::schema::Document;
-use super::schema::flexible::Start;
-use super::schema::joints::{Ends, Joint as WrittenJoint, JointPlace};
-use super::schema::mechanics::Shape;
 use crate::math::rotation::{compose, conjugate, from_axis_angle, matrix};
 use crate::math::{Parameters, Scalar, Vec3};
 use crate::model::{DegreeOfFreedom, Drive, Joint, Mobility, Model, RigidBody, TimeFunction};
+use crate::quantity::Quantity;
+use crate::schema::Document;
+use crate::schema::flexible::Start;
+use crate::schema::joints::{Ends, Joint as WrittenJoint, JointPlace};
+use crate::schema::mechanics::Shape;
 use crate::system::blocks::{Block, Blocks};
 use crate::system::bodies::positions_of;
 use crate::system::failure::AssemblyFailure;
@@ -57,7 +57,7 @@ pub(super) enum Asked {
 }
 
 /// The starts of the joints of a scene.
-pub(crate) struct Starts<S> {
+pub struct Starts<S> {
     given: Vec<Given<S>>,
     pub(super) blocks: Blocks,
     /// By joint: whether it is closed in every placement.
@@ -68,11 +68,7 @@ pub(crate) struct Starts<S> {
 
 impl<S: Scalar> Starts<S> {
     /// The starts of a checked document with the joints of `model`; `None` if it has none.
-    pub(crate) fn of(
-        document: &Document,
-        assembly: &Assembly<S>,
-        model: &Model<S>,
-    ) -> Option<Self> {
+    pub fn of(document: &Document, assembly: &Assembly<S>, model: &Model<S>) -> Option<Self> {
         let mut given = Vec::new();
         for (joint, written) in document.joints.values().enumerate() {
             for dof in DOFS {
@@ -91,7 +87,7 @@ impl<S: Scalar> Starts<S> {
         let ends: Vec<_> = (model.joints.iter())
             .map(|joint| (joint.body_a, joint.body_b))
             .collect();
-        let moving = |body: &super::schema::mechanics::Body| {
+        let moving = |body: &crate::schema::mechanics::Body| {
             body.velocity.is_some() || document.initial_velocity.is_some()
         };
         let joints = document.joints.values();
@@ -179,7 +175,7 @@ impl<S: Scalar> Starts<S> {
     ///
     /// # Errors
     /// The joint that cannot start as given.
-    pub(crate) fn place(&self, model: &mut Model<S>) -> Result<(), AssemblyFailure> {
+    pub fn place(&self, model: &mut Model<S>) -> Result<(), AssemblyFailure> {
         let groups = self.groups(model, Asked::Place);
         let mut moves: Vec<Option<Move<S>>> = vec![None; model.bodies.len()];
         for block in &self.blocks.list {

@@ -12,7 +12,7 @@ const LARGEST: f64 = 1e50;
 
 /// What the schema states about a number.
 #[derive(Clone, Debug, Default)]
-pub(crate) struct Number {
+pub struct Number {
     /// Unit, if it has one.
     pub unit: String,
     /// The reason why no design variable may point at it; `None` if one may.
@@ -25,7 +25,7 @@ pub(crate) struct Number {
 
 /// Result of checking a document.
 #[derive(Default)]
-pub(super) struct Structure {
+pub struct Structure {
     /// Structural faults.
     pub findings: Vec<Finding>,
     /// Numbers by pointer.
@@ -33,7 +33,7 @@ pub(super) struct Structure {
 }
 
 /// Checks a document.
-pub(super) fn walk(document: &Value, schema: &Value) -> Structure {
+pub fn walk(document: &Value, schema: &Value) -> Structure {
     let mut walker = Walker {
         root: schema,
         structure: Structure::default(),

@@ -33,17 +33,17 @@ fn escaped(text: &str, kept: &[char]) -> String {
 }
 
 /// The text on one line, with escapes such as \u{1b} for invisible characters.
-pub(crate) fn visible(text: &str) -> String {
+pub fn visible(text: &str) -> String {
     escaped(text, &[])
 }
 
 /// As [`visible`], for a text that may have lines.
-pub(crate) fn visible_lines(text: &str) -> String {
+pub fn visible_lines(text: &str) -> String {
     escaped(text, &['\n', '\t'])
 }
 
 /// The beginning and the end of a text, if it is longer than `most` characters.
-pub(crate) fn shortened(text: &str, most: usize) -> Cow<'_, str> {
+pub fn shortened(text: &str, most: usize) -> Cow<'_, str> {
     let count = text.chars().count();
     if count <= most {
         return text.into();

@@ -6,9 +6,9 @@
 use super::finding::Finding;
 use super::overrides::nearest_path;
 use super::pointer::{is_below, join, keys, nearest_pointer};
-use super::quantity::Quantity;
-use super::schema::{Document, Variable as Written};
 use super::structure::{Number, Structure, describe};
+use crate::quantity::Quantity;
+use crate::schema::{Document, Variable as Written};
 use serde_json::Value;
 use std::collections::HashMap;
 

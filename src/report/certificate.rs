@@ -8,7 +8,7 @@ use serde::{Deserialize, Serialize};
 /// the adjoint, Σᵢ dᵢ ∂f/∂xᵢ, and by the complex step, Im f(x + i h d)/h, on the same steps.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
-pub(crate) struct GradientCertificate {
+pub struct GradientCertificate {
     /// Seed of the direction.
     pub seed: u64,
     /// The direction d: the change of each variable, in its unit.
@@ -29,7 +29,7 @@ pub(crate) struct GradientCertificate {
 /// Work of a certificate, in whole runs.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
-pub(crate) struct CertificateCost {
+pub struct CertificateCost {
     /// Backward marches of all functions.
     pub gradients: u64,
     /// Runs in complex numbers.
@@ -39,7 +39,7 @@ pub(crate) struct CertificateCost {
 /// The derivatives at one design.
 #[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
-pub(crate) struct CertifiedDesign {
+pub struct CertifiedDesign {
     /// The derivatives, by function.
     #[serde(default, skip_serializing_if = "IndexMap::is_empty")]
     pub functions: IndexMap<String, CertifiedDerivative>,
@@ -54,7 +54,7 @@ pub(crate) struct CertifiedDesign {
 /// A directional derivative, computed twice; a number that is not finite is left out.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
-pub(crate) struct CertifiedDerivative {
+pub struct CertifiedDerivative {
     /// By the adjoint.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub adjoint: Option<f64>,
@@ -69,7 +69,7 @@ pub(crate) struct CertifiedDerivative {
 
 impl GradientCertificate {
     /// The faults, with the design, one sentence each.
-    pub(crate) fn faults(&self) -> Vec<String> {
+    pub fn faults(&self) -> Vec<String> {
         self.told(|design| &design.faults)
     }
 

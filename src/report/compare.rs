@@ -7,7 +7,7 @@ use indexmap::IndexMap;
 
 /// How far each kind of number may move.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub(crate) struct Tolerances {
+pub struct Tolerances {
     /// Objective, start objective and true maximum: relative to the baseline's magnitude or, if that
     /// is larger, to 1e-6 of the objective at the start. Default 1e-6: an optimum is flat, so the
     /// objective is as exact as the stopping tolerance, and a square that vanishes as its square.
@@ -45,7 +45,7 @@ impl Default for Tolerances {
 
 /// What a row of a comparison means.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub(crate) enum Verdict {
+pub enum Verdict {
     /// Within tolerance.
     Same,
     /// Worth knowing, not a failure.
@@ -56,7 +56,7 @@ pub(crate) enum Verdict {
 
 /// One quantity of two records.
 #[derive(Clone, Debug, PartialEq)]
-pub(crate) struct Row {
+pub struct Row {
     /// Kind of quantity: `design`, `constraint`, `work`, ...
     pub kind: &'static str,
     /// Name of the quantity.
@@ -73,7 +73,7 @@ pub(crate) struct Row {
 
 /// All quantities of two records, side by side.
 #[derive(Clone, Debug, PartialEq)]
-pub(crate) struct Comparison {
+pub struct Comparison {
     /// Rows in the order of the record.
     pub rows: Vec<Row>,
 }
@@ -84,7 +84,7 @@ pub(crate) struct Comparison {
 /// bounds, their multipliers, sensitivities and work; a variable or constraint that only one of them has is
 /// a difference. Runs that did not converge have no optimum that could be the same. A number that is not finite
 /// never agrees.
-pub(crate) fn compare(new: &Optimum, baseline: &Optimum, tolerances: &Tolerances) -> Comparison {
+pub fn compare(new: &Optimum, baseline: &Optimum, tolerances: &Tolerances) -> Comparison {
     let mut rows = Vec::new();
     let mut status = text_row("status", "", &new.status, &baseline.status);
     if [new, baseline].iter().any(|own| own.status != CONVERGED) {
@@ -211,12 +211,12 @@ pub(crate) fn compare(new: &Optimum, baseline: &Optimum, tolerances: &Tolerances
 
 impl Comparison {
     /// Whether all quantities agree within tolerance; warnings do not count.
-    pub(crate) fn passed(&self) -> bool {
+    pub fn passed(&self) -> bool {
         self.rows.iter().all(|row| row.verdict != Verdict::Moved)
     }
 
     /// The verdict in a sentence, and a table of the differences and warnings.
-    pub(crate) fn text(&self) -> String {
+    pub fn text(&self) -> String {
         let count = |verdict| {
             self.rows
                 .iter()

@@ -21,7 +21,7 @@ pub(super) fn write_record<'a>(out: &mut String, fields: impl Iterator<Item = &'
 
 /// A table with a heading for each column. Numbers read back exactly; an entry that is not finite
 /// is empty.
-pub(crate) fn csv_table(header: &[String], rows: impl Iterator<Item = Vec<f64>>) -> String {
+pub fn csv_table(header: &[String], rows: impl Iterator<Item = Vec<f64>>) -> String {
     let mut text = String::new();
     write_record(&mut text, header.iter().map(String::as_str));
     for row in rows {

@@ -10,7 +10,7 @@ fn shown(path: &Path) -> String {
 
 /// A record that could not be read, written or drawn.
 #[derive(Debug, thiserror::Error)]
-pub(crate) enum ReportError {
+pub enum ReportError {
     /// The operating system refused to write.
     #[error("cannot write {}: {source}", shown(path))]
     Write {

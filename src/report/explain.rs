@@ -11,7 +11,7 @@ const RICHER: &str =
 
 /// The explanation of `optimize explain`.
 #[derive(Clone, Debug, PartialEq, Serialize)]
-pub(crate) struct Explanation {
+pub struct Explanation {
     /// Name of the problem.
     pub name: String,
     /// Numbers of bodies, joints and loads.
@@ -51,7 +51,7 @@ pub(crate) struct Explanation {
 
 /// How a scene is integrated.
 #[derive(Clone, Debug, PartialEq, Serialize)]
-pub(crate) struct IntegrationUse {
+pub struct IntegrationUse {
     /// The method, why it was chosen, and how many steps it takes at the start.
     pub method: String,
     /// See above.
@@ -82,7 +82,7 @@ pub(crate) struct IntegrationUse {
 
 /// How the linear systems of steps of finite elements are solved.
 #[derive(Clone, Debug, PartialEq, Serialize)]
-pub(crate) struct LinearUse {
+pub struct LinearUse {
     /// The solver, and why it was chosen.
     pub solver: String,
     /// See above.
@@ -116,7 +116,7 @@ impl LinearUse {
 
 /// Size of the equations of a scene, and how they are eliminated.
 #[derive(Clone, Debug, PartialEq, Serialize)]
-pub(crate) struct SystemSize {
+pub struct SystemSize {
     /// Velocities.
     pub velocities: usize,
     /// Constraint rows.
@@ -138,7 +138,7 @@ pub(crate) struct SystemSize {
 
 /// Use and dependences of a function.
 #[derive(Clone, Debug, PartialEq, Serialize)]
-pub(crate) struct FunctionUse {
+pub struct FunctionUse {
     /// Its name.
     pub name: String,
     /// "objective", "constraint", or empty if an optimisation never evaluates it.
@@ -152,7 +152,7 @@ pub(crate) struct FunctionUse {
 
 impl Explanation {
     /// The explanation as text.
-    pub(crate) fn text(&self) -> String {
+    pub fn text(&self) -> String {
         let mut text = format!(
             "{}: {} bodies, {} joints, {} loads\n",
             self.name, self.bodies, self.joints, self.loads
@@ -294,13 +294,13 @@ impl Explanation {
     }
 
     /// The explanation as JSON.
-    pub(crate) fn json(&self) -> serde_json::Result<String> {
+    pub fn json(&self) -> serde_json::Result<String> {
         Ok(serde_json::to_string_pretty(self)? + "\n")
     }
 }
 
 /// A number of bytes as text.
-pub(crate) fn size(bytes: usize) -> String {
+pub fn size(bytes: usize) -> String {
     match bytes as f64 {
         bytes if bytes < 1e3 => format!("{bytes} B"),
         bytes if bytes < 1e6 => format!("{:.1} kB", bytes / 1e3),

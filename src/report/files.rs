@@ -15,7 +15,7 @@ const TEMPORARY: (&str, &str) = (".flexbody-", ".tmp");
 ///
 /// # Errors
 /// [`ReportError::Write`] with the path; an existing file is then untouched.
-pub(crate) fn atomic_write(path: &Path, bytes: &[u8]) -> Result<(), ReportError> {
+pub fn atomic_write(path: &Path, bytes: &[u8]) -> Result<(), ReportError> {
     finish(prepare(path, bytes)?).map(drop)
 }
 
@@ -38,7 +38,7 @@ pub(super) fn atomic_begin(path: &Path, bytes: &[u8]) -> Result<File, ReportErro
 ///
 /// # Errors
 /// [`ReportError::Write`] with the path of the first file that failed.
-pub(crate) fn write_all(files: &[(PathBuf, Vec<u8>)]) -> Result<(), ReportError> {
+pub fn write_all(files: &[(PathBuf, Vec<u8>)]) -> Result<(), ReportError> {
     for (path, _) in files {
         make_directory(directory(path))?;
     }
@@ -139,7 +139,7 @@ fn finish(prepared: Prepared) -> Result<File, ReportError> {
 /// for any reason.
 #[derive(Debug)]
 #[must_use]
-pub(crate) struct HeldDirectory {
+pub struct HeldDirectory {
     /// Locked while it is open; `None` on a file system without locks.
     _lock: Option<File>,
 }
@@ -169,7 +169,7 @@ fn hold(path: &Path) -> Result<HeldDirectory, ReportError> {
 /// # Errors
 /// [`ReportError::InUse`] if another run holds it; the directory is then unchanged.
 /// [`ReportError::Write`] with the path of the directory.
-pub(crate) fn prepare_directory(path: &Path) -> Result<HeldDirectory, ReportError> {
+pub fn prepare_directory(path: &Path) -> Result<HeldDirectory, ReportError> {
     let fault = |source| ReportError::Write {
         path: path.to_path_buf(),
         source,
@@ -192,7 +192,7 @@ pub(crate) fn prepare_directory(path: &Path) -> Result<HeldDirectory, ReportErro
 ///
 /// # Errors
 /// [`ReportError::Read`] with the path, also if the file is not UTF-8.
-pub(crate) fn read_text(path: &Path) -> Result<String, ReportError> {
+pub fn read_text(path: &Path) -> Result<String, ReportError> {
     std::fs::read_to_string(path).map_err(|source| ReportError::Read {
         path: path.to_path_buf(),
         source,
@@ -201,7 +201,7 @@ pub(crate) fn read_text(path: &Path) -> Result<String, ReportError> {
 
 /// The relative path from the directory `from` to the directory `to`, which exist. None if there is
 /// none.
-pub(crate) fn path_between(from: &Path, to: &Path) -> Option<String> {
+pub fn path_between(from: &Path, to: &Path) -> Option<String> {
     let to = if to.as_os_str().is_empty() {
         Path::new(".")
     } else {

@@ -6,7 +6,7 @@ use serde::{Deserialize, Serialize};
 
 /// Name and unit of a column.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
-pub(crate) struct Column {
+pub struct Column {
     /// Name, as in the problem file.
     pub name: String,
     /// Unit such as `kg` or `m/s`, where it is known; without square brackets.
@@ -15,7 +15,7 @@ pub(crate) struct Column {
 
 /// One iteration of an optimisation.
 #[derive(Clone, Debug, Default, PartialEq)]
-pub(crate) struct HistoryRow {
+pub struct HistoryRow {
     /// Iteration; the start is 0.
     pub iteration: usize,
     /// Function evaluations until here.
@@ -52,7 +52,7 @@ pub(crate) struct HistoryRow {
 
 /// All iterations of an optimisation.
 #[derive(Clone, Debug, PartialEq)]
-pub(crate) struct History {
+pub struct History {
     /// The objective's name and unit.
     pub objective: Column,
     /// Design variables.
@@ -95,7 +95,7 @@ impl History {
     /// # Errors
     /// [`ReportError::History`] if a row has not one entry for each variable and constraint, or
     /// if a unit contains a square bracket.
-    pub(crate) fn to_csv(&self) -> Result<String, ReportError> {
+    pub fn to_csv(&self) -> Result<String, ReportError> {
         let mut text = self.header()?;
         for i in 0..self.rows.len() {
             self.write_row(&mut text, i)?;
@@ -143,7 +143,7 @@ impl History {
     ///
     /// # Errors
     /// [`ReportError::History`] with the line, what was found and what was expected.
-    pub(crate) fn from_csv(text: &str) -> Result<History, ReportError> {
+    pub fn from_csv(text: &str) -> Result<History, ReportError> {
         let records = csv::parse(text)
             .map_err(|bad| fault(bad.line, "a quote out of place", "quotes as in RFC 4180"))?;
         let Some((header, rows)) = records.split_first() else {
@@ -202,7 +202,7 @@ impl History {
 
 impl Column {
     /// A column by name and unit.
-    pub(crate) fn new(name: &str, unit: Option<&str>) -> Column {
+    pub fn new(name: &str, unit: Option<&str>) -> Column {
         Column {
             name: name.to_owned(),
             unit: unit.map(str::to_owned),

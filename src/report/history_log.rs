@@ -9,14 +9,14 @@ use std::path::{Path, PathBuf};
 /// The table of a run under way. Each row is appended when it is known; earlier rows do not change.
 /// If the process is killed, the last row may be incomplete.
 #[derive(Debug)]
-pub(crate) struct HistoryLog {
+pub struct HistoryLog {
     path: PathBuf,
     file: Option<File>,
 }
 
 impl HistoryLog {
     /// A new table in the file `path`, written with the first row.
-    pub(crate) fn new(path: &Path) -> Self {
+    pub fn new(path: &Path) -> Self {
         Self {
             path: path.to_path_buf(),
             file: None,
@@ -27,7 +27,7 @@ impl HistoryLog {
     ///
     /// # Errors
     /// [`ReportError::Write`] with the path, or as [`History::to_csv`].
-    pub(crate) fn append(&mut self, history: &History) -> Result<(), ReportError> {
+    pub fn append(&mut self, history: &History) -> Result<(), ReportError> {
         let Some(last) = history.rows.len().checked_sub(1) else {
             return Ok(());
         };
@@ -58,7 +58,7 @@ fn new_file(path: &Path) -> std::io::Result<File> {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::report::history::{Column, HistoryRow};
+    use crate::history::{Column, HistoryRow};
 
     /// A link in place of the table is replaced; what it points to stays.
     #[cfg(unix)]

@@ -6,7 +6,7 @@ use super::table::render;
 
 /// Results on one mesh.
 #[derive(Clone, Debug, PartialEq)]
-pub(crate) struct MeshRow {
+pub struct MeshRow {
     /// Number of cuts of each element of the file along each direction.
     pub cuts: usize,
     /// Number of elements.
@@ -25,7 +25,7 @@ pub(crate) struct MeshRow {
 
 /// All meshes of a problem; the last is the reference.
 #[derive(Clone, Debug, PartialEq)]
-pub(crate) struct PrecisionOfMesh {
+pub struct PrecisionOfMesh {
     /// Name of the problem.
     pub name: String,
     /// Names of the functions.
@@ -38,7 +38,7 @@ pub(crate) struct PrecisionOfMesh {
 
 impl PrecisionOfMesh {
     /// Relative differences from the finest mesh: of each function, and of the gradient.
-    pub(crate) fn errors(&self, row: &MeshRow) -> Option<Vec<f64>> {
+    pub fn errors(&self, row: &MeshRow) -> Option<Vec<f64>> {
         let last = self.rows.last().filter(|last| last.cuts != row.cuts)?;
         let relative = |a: f64, b: f64| if a == b { 0.0 } else { (a - b).abs() / b.abs() };
         let pairs = row.values.iter().zip(&last.values);
@@ -80,7 +80,7 @@ impl PrecisionOfMesh {
     }
 
     /// A table for people.
-    pub(crate) fn text(&self) -> String {
+    pub fn text(&self) -> String {
         let headings: Vec<String> = self.headings().iter().map(|h| format!(">{h}")).collect();
         let headings: Vec<&str> = headings.iter().map(String::as_str).collect();
         format!(
@@ -91,7 +91,7 @@ impl PrecisionOfMesh {
     }
 
     /// A table for programs.
-    pub(crate) fn to_csv(&self) -> String {
+    pub fn to_csv(&self) -> String {
         let row = |row: &MeshRow| {
             let counts = [row.elements as f64, row.unknowns as f64];
             let times = [row.seconds, row.gradient_seconds];

@@ -43,7 +43,7 @@ pub(super) fn grouped(count: u64) -> String {
 }
 
 /// A unit after its number; nothing for numbers without one.
-pub(crate) fn with_space(unit: Option<&str>) -> String {
+pub fn with_space(unit: Option<&str>) -> String {
     let unit = unit.filter(|unit| !["", "1"].contains(unit));
     unit.map(|unit| format!(" {unit}")).unwrap_or_default()
 }

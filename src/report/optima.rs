@@ -6,7 +6,7 @@ use super::history::{Column, OBJECTIVE, VARIABLE, exact};
 
 /// An optimum that at least one start reached.
 #[derive(Clone, Debug, PartialEq)]
-pub(crate) struct FoundOptimum {
+pub struct FoundOptimum {
     /// The number of the start with the best value there, from 1.
     pub start: usize,
     /// Number of starts that reached it.
@@ -22,7 +22,7 @@ pub(crate) struct FoundOptimum {
 ///
 /// # Errors
 /// [`ReportError::History`] if a unit contains a square bracket.
-pub(crate) fn optima_csv(
+pub fn optima_csv(
     objective: &Column,
     variables: &[Column],
     optima: &[FoundOptimum],

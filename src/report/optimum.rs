@@ -1,7 +1,7 @@
 //! The end of an optimisation as a record, `optimum.json`.
 
 use super::ReportError;
-pub(crate) use super::certificate::*;
+pub use super::certificate::*;
 use indexmap::IndexMap;
 use serde::{Deserialize, Serialize};
 
@@ -11,7 +11,7 @@ use serde::{Deserialize, Serialize};
 /// bounds are left out.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
-pub(crate) struct Optimum {
+pub struct Optimum {
     /// How the run ended, in one word such as `converged`.
     pub status: String,
     /// How the run ended, in a sentence.
@@ -60,7 +60,7 @@ pub(crate) struct Optimum {
 /// Whether the objective is made small or large.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
 #[serde(rename_all = "lowercase")]
-pub(crate) enum Sense {
+pub enum Sense {
     /// Smaller is better.
     Minimise,
     /// Larger is better.
@@ -70,7 +70,7 @@ pub(crate) enum Sense {
 /// A side of an interval.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
 #[serde(rename_all = "lowercase")]
-pub(crate) enum BoundSide {
+pub enum BoundSide {
     /// The lower bound.
     Lower,
     /// The upper bound.
@@ -82,7 +82,7 @@ pub(crate) enum BoundSide {
 /// Which bounds of a constraint are active.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
 #[serde(rename_all = "lowercase")]
-pub(crate) enum Activity {
+pub enum Activity {
     /// None.
     Inactive,
     /// The lower bound.
@@ -96,7 +96,7 @@ pub(crate) enum Activity {
 /// The objective at the optimum.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
-pub(crate) struct Objective {
+pub struct Objective {
     /// Name of the function in the problem file.
     pub function: String,
     /// Whether it is minimised or maximised.
@@ -124,7 +124,7 @@ pub(crate) struct Objective {
 /// A design variable at the optimum, in the units of the problem file.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
-pub(crate) struct DesignValue {
+pub struct DesignValue {
     /// Value at the optimum.
     pub value: f64,
     /// Value at the start.
@@ -143,7 +143,7 @@ pub(crate) struct DesignValue {
 /// Derivative of the optimal objective by a number that is not designed.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
-pub(crate) struct Sensitivity {
+pub struct Sensitivity {
     /// Value of the number.
     pub value: f64,
     /// Derivative, in the user's sense of the objective.
@@ -156,7 +156,7 @@ pub(crate) struct Sensitivity {
 /// A constraint at the optimum.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
-pub(crate) struct ConstraintValue {
+pub struct ConstraintValue {
     /// Value at the optimum.
     pub value: f64,
     /// Value at the start, where it is known; older records have none.
@@ -190,7 +190,7 @@ pub(crate) struct ConstraintValue {
 /// A smooth aggregate and the largest value over time, or over a structure.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
-pub(crate) struct Aggregate {
+pub struct Aggregate {
     /// The side of the largest value on which the aggregate always lies; of one over time and points, on which it lies
     /// here.
     pub lies: Lies,
@@ -213,7 +213,7 @@ pub(crate) struct Aggregate {
 /// A side of the largest value over time.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
 #[serde(rename_all = "lowercase")]
-pub(crate) enum Lies {
+pub enum Lies {
     /// Never above it.
     Below,
     /// Never below it.
@@ -223,7 +223,7 @@ pub(crate) enum Lies {
 /// Lagrange multipliers, unscaled, with the signs of the optimiser's own Lagrangian.
 #[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
-pub(crate) struct Multipliers {
+pub struct Multipliers {
     /// Of the constraints, by name.
     pub constraints: IndexMap<String, f64>,
     /// Of the lower bounds, by variable.
@@ -235,7 +235,7 @@ pub(crate) struct Multipliers {
 /// Residuals of the optimality conditions, largest components.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
-pub(crate) struct Kkt {
+pub struct Kkt {
     /// In the optimiser's scaled units; these end the run.
     pub scaled: KktResiduals,
     /// In the user's units.
@@ -245,7 +245,7 @@ pub(crate) struct Kkt {
 /// One set of optimality residuals.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
-pub(crate) struct KktResiduals {
+pub struct KktResiduals {
     /// Gradient of the Lagrangian.
     pub stationarity: f64,
     /// Violation of constraints and bounds.
@@ -257,7 +257,7 @@ pub(crate) struct KktResiduals {
 /// How the optimiser scaled the problem at the start.
 #[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
-pub(crate) struct Scaling {
+pub struct Scaling {
     /// Of the objective.
     pub objective: RowScaling,
     /// Of the constraints, by name.
@@ -269,7 +269,7 @@ pub(crate) struct Scaling {
 /// Scaling of one function.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
-pub(crate) struct RowScaling {
+pub struct RowScaling {
     /// Factor of the function.
     pub factor: f64,
     /// Largest derivative at the start in scaled variables, before the factor.
@@ -280,7 +280,7 @@ pub(crate) struct RowScaling {
 /// constraints leave free.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
-pub(crate) struct SecondOrder {
+pub struct SecondOrder {
     /// Eigenvalues of the reduced Hessian in scaled variables, ascending; none at a vertex.
     pub eigenvalues: Vec<f64>,
     /// Estimated error of its entries.
@@ -300,7 +300,7 @@ pub(crate) struct SecondOrder {
 /// Verdict of the curvature.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
 #[serde(rename_all = "snake_case")]
-pub(crate) enum Curvature {
+pub enum Curvature {
     /// Strictly active bounds and constraints leave no direction free.
     NoFreeDirection,
     /// The curvature is positive along all free directions.
@@ -316,7 +316,7 @@ pub(crate) enum Curvature {
 /// How the motion was integrated.
 #[derive(Clone, Debug, PartialEq, Eq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
-pub(crate) struct Integration {
+pub struct Integration {
     /// Name of the method.
     pub method: String,
     /// Why it was chosen.
@@ -330,7 +330,7 @@ pub(crate) struct Integration {
 /// Work done.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
-pub(crate) struct Counts {
+pub struct Counts {
     /// Iterations of the optimiser.
     pub iterations: u64,
     /// Simulations requested by the optimiser.
@@ -357,7 +357,7 @@ pub(crate) struct Counts {
 
 impl Counts {
     /// All counts with their names, in order.
-    pub(crate) fn named(&self) -> [(&'static str, u64); 10] {
+    pub fn named(&self) -> [(&'static str, u64); 10] {
         [
             ("iterations", self.iterations),
             ("function evaluations", self.function_evaluations),
@@ -376,7 +376,7 @@ impl Counts {
 /// The problem that was solved.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
-pub(crate) struct ProblemRecord {
+pub struct ProblemRecord {
     /// Name of the problem.
     pub name: String,
     /// Name of the problem file, without directories.
@@ -395,7 +395,7 @@ impl Optimum {
     ///
     /// # Errors
     /// [`ReportError::NotFinite`] with the place of a number that is NaN or infinite.
-    pub(crate) fn to_json(&self) -> Result<String, ReportError> {
+    pub fn to_json(&self) -> Result<String, ReportError> {
         let value = serde_json::to_value(self)?;
         // An absent value is left out, so a null outside the document is a number that JSON cannot
         // hold.
@@ -409,7 +409,7 @@ impl Optimum {
     ///
     /// # Errors
     /// [`ReportError::Optimum`] with line and column.
-    pub(crate) fn from_json(text: &str) -> Result<Optimum, ReportError> {
+    pub fn from_json(text: &str) -> Result<Optimum, ReportError> {
         Ok(serde_json::from_str(text)?)
     }
 }

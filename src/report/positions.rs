@@ -5,7 +5,7 @@ use super::csv;
 use std::path::Path;
 
 /// Positions of centres of mass \[m\] by index of the body.
-pub(crate) type Positions = Vec<(usize, [f64; 3])>;
+pub type Positions = Vec<(usize, [f64; 3])>;
 
 /// Reads a table of positions, `time,body,x,y,z` (s and m). Returns those of the instant `end` by
 /// index of the body in `bodies`.
@@ -13,7 +13,7 @@ pub(crate) type Positions = Vec<(usize, [f64; 3])>;
 /// # Errors
 /// [`ReportError::Positions`] with the line if the table has another form, names another body,
 /// names one twice or has no row at the end.
-pub(crate) fn positions_from_csv(
+pub fn positions_from_csv(
     path: &Path,
     text: &str,
     bodies: &[String],

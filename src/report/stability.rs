@@ -4,7 +4,7 @@ use super::csv;
 
 /// Result of a case.
 #[derive(Clone, Debug, PartialEq)]
-pub(crate) enum StabilityOutcome {
+pub enum StabilityOutcome {
     /// The numbers agree with their judge.
     Accurate,
     /// The numbers are wrong, and the program says so.
@@ -33,7 +33,7 @@ pub(crate) enum StabilityOutcome {
 
 impl StabilityOutcome {
     /// The class in a few words.
-    pub(crate) fn class(&self) -> &'static str {
+    pub fn class(&self) -> &'static str {
         match self {
             StabilityOutcome::Accurate => "accurate",
             StabilityOutcome::Degraded { .. } => "degraded",
@@ -45,7 +45,7 @@ impl StabilityOutcome {
     }
 
     /// Whether the result is a failure of the program.
-    pub(crate) fn is_failure(&self) -> bool {
+    pub fn is_failure(&self) -> bool {
         match self {
             StabilityOutcome::Accurate
             | StabilityOutcome::Degraded { .. }
@@ -57,7 +57,7 @@ impl StabilityOutcome {
     }
 
     /// The program's message, if any.
-    pub(crate) fn words(&self) -> &str {
+    pub fn words(&self) -> &str {
         match self {
             StabilityOutcome::Degraded { told } => told,
             StabilityOutcome::Refused { message } | StabilityOutcome::Panicked { message } => {
@@ -72,7 +72,7 @@ impl StabilityOutcome {
 
 /// One case.
 #[derive(Clone, Debug, PartialEq)]
-pub(crate) struct StabilityRow {
+pub struct StabilityRow {
     /// The extreme property, in one word.
     pub family: String,
     /// Its value.
@@ -110,19 +110,19 @@ pub(crate) struct StabilityRow {
 
 impl StabilityRow {
     /// Name of the case, by which it can be run alone.
-    pub(crate) fn name(&self) -> String {
+    pub fn name(&self) -> String {
         case_name(&self.family, &self.extreme, &self.method)
     }
 }
 
 /// Name of a case: property, value and method.
-pub(crate) fn case_name(family: &str, extreme: &str, method: &str) -> String {
+pub fn case_name(family: &str, extreme: &str, method: &str) -> String {
     format!("{family}/{extreme}/{method}")
 }
 
 /// A family of cases.
 #[derive(Clone, Debug, PartialEq)]
-pub(crate) struct StabilityFamily {
+pub struct StabilityFamily {
     /// Its word.
     pub name: String,
     /// Its description.
@@ -131,7 +131,7 @@ pub(crate) struct StabilityFamily {
 
 /// All cases, family by family.
 #[derive(Clone, Debug, PartialEq)]
-pub(crate) struct StabilityTable {
+pub struct StabilityTable {
     /// Families in the order of the table.
     pub families: Vec<StabilityFamily>,
     /// Cases in the order of the table.
@@ -171,7 +171,7 @@ const COLUMNS: [&str; 18] = [
 
 impl StabilityTable {
     /// The rows as CSV.
-    pub(crate) fn to_csv(&self) -> String {
+    pub fn to_csv(&self) -> String {
         let mut text = String::new();
         csv::write_record(&mut text, COLUMNS.into_iter());
         let number = |x: Option<f64>| x.map_or_else(String::new, |x| format!("{x:.3e}"));
@@ -202,7 +202,7 @@ impl StabilityTable {
     }
 
     /// The rows as Markdown, one table per family.
-    pub(crate) fn to_markdown(&self) -> String {
+    pub fn to_markdown(&self) -> String {
         let mut text = String::from(
             "# Stability\n\nResults of `optimize stability` on extreme scenes. \
              [docs/stability.md](../../docs/stability.md) says how they are judged.\nThe command of \
@@ -251,7 +251,7 @@ impl StabilityTable {
     }
 
     /// Number of rows of every class that occurs, as text.
-    pub(crate) fn summary(&self) -> String {
+    pub fn summary(&self) -> String {
         let mut parts = Vec::new();
         for class in CLASSES {
             let count = self.rows.iter().filter(|row| row.outcome.class() == class);
@@ -264,7 +264,7 @@ impl StabilityTable {
     }
 
     /// Whether a row is wrong and silent, panicked or exceeded its time limit.
-    pub(crate) fn has_failures(&self) -> bool {
+    pub fn has_failures(&self) -> bool {
         self.rows.iter().any(|row| row.outcome.is_failure())
     }
 }

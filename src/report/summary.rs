@@ -11,7 +11,7 @@ use super::table;
 const SHOWN: usize = 3;
 
 /// Status, objective, design, constraints, accuracy and work of an optimisation, as text.
-pub(crate) fn summary(optimum: &Optimum) -> String {
+pub fn summary(optimum: &Optimum) -> String {
     let mut text = format!("{}: {}\n\n", optimum.problem.name, optimum.message);
     text.push_str(&objective(optimum));
     text.push('\n');
@@ -121,7 +121,7 @@ fn objective(optimum: &Optimum) -> String {
 }
 
 /// Whether an estimated error is at most the last digit of the value.
-pub(crate) fn is_rounding(error: f64, value: f64) -> bool {
+pub fn is_rounding(error: f64, value: f64) -> bool {
     error <= f64::EPSILON * value.abs()
 }
 

@@ -7,7 +7,7 @@ use serde::{Deserialize, Serialize};
 
 /// The optimum for one value of the parameter.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
-pub(crate) struct SweptOptimum {
+pub struct SweptOptimum {
     /// Value of the parameter.
     pub value: f64,
     /// SHA-256 of the problem with this value, hexadecimal.
@@ -31,7 +31,7 @@ pub(crate) struct SweptOptimum {
 
 /// The optima along a parameter.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
-pub(crate) struct Sweep {
+pub struct Sweep {
     /// JSON Pointer to the parameter.
     pub parameter: String,
     /// The objective's name and unit.
@@ -47,7 +47,7 @@ pub(crate) struct Sweep {
 impl Sweep {
     /// Keeps the optima of the first runs that are the same in a sweep over `problems`, each a value
     /// and the SHA-256 of its problem.
-    pub(crate) fn keep_common<'p>(&mut self, problems: impl Iterator<Item = (f64, &'p str)>) {
+    pub fn keep_common<'p>(&mut self, problems: impl Iterator<Item = (f64, &'p str)>) {
         let same = |(found, (value, problem)): &(&SweptOptimum, (f64, &str))| {
             found.value.to_bits() == value.to_bits() && found.problem == *problem
         };
@@ -61,7 +61,7 @@ impl Sweep {
     ///
     /// # Errors
     /// [`ReportError::History`] if a unit contains a square bracket.
-    pub(crate) fn to_csv(&self) -> Result<String, ReportError> {
+    pub fn to_csv(&self) -> Result<String, ReportError> {
         let mut header = vec![
             self.parameter.clone(),
             "status".into(),
@@ -95,7 +95,7 @@ impl Sweep {
     }
 
     /// The same for a person: value, objective, evaluations and status.
-    pub(crate) fn text(&self) -> String {
+    pub fn text(&self) -> String {
         let unit = self.objective.unit.as_deref().unwrap_or_default();
         let mut text = format!(
             "{:>14} {:>18} {unit:8} evaluations status, from\n",

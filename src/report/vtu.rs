@@ -15,7 +15,7 @@ const QUADRATIC_EDGE: usize = 21;
 
 /// A mesh with its fields.
 #[derive(Clone, Debug, Default)]
-pub(crate) struct Fields {
+pub struct Fields {
     /// Places of the nodes \[m\].
     pub nodes: Vec<[f64; 3]>,
     /// Nodes of the shells, row by row.
@@ -29,7 +29,7 @@ pub(crate) struct Fields {
 }
 
 /// The file.
-pub(crate) fn vtu(fields: &Fields) -> String {
+pub fn vtu(fields: &Fields) -> String {
     let cells = fields.shells.len() + fields.beams.len();
     let mut text = String::from(
         "<?xml version=\"1.0\"?>\n<VTKFile type=\"UnstructuredGrid\" version=\"0.1\" \
@@ -102,7 +102,7 @@ pub(crate) fn vtu(fields: &Fields) -> String {
 }
 
 /// A collection of files for the instants of a motion (`.pvd`), which ParaView opens: time \[s\] and name.
-pub(crate) fn pvd(files: &[(f64, String)]) -> String {
+pub fn pvd(files: &[(f64, String)]) -> String {
     let mut text = String::from(
         "<?xml version=\"1.0\"?>\n<VTKFile type=\"Collection\" version=\"0.1\" \
          byte_order=\"LittleEndian\">\n<Collection>\n",

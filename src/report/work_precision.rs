@@ -7,7 +7,7 @@ use crate::integrate::WorkCounts;
 
 /// Result of one method with one step size or tolerance.
 #[derive(Clone, Debug, PartialEq)]
-pub(crate) struct PrecisionRow {
+pub struct PrecisionRow {
     /// Name of the method.
     pub method: String,
     /// Its formal order.
@@ -36,7 +36,7 @@ pub(crate) struct PrecisionRow {
 
 /// A measurement of all methods on a problem.
 #[derive(Clone, Debug, PartialEq)]
-pub(crate) struct WorkPrecision {
+pub struct WorkPrecision {
     /// Name of the problem.
     pub problem: String,
     /// Length of the motion \[s\].
@@ -59,7 +59,7 @@ pub(crate) struct WorkPrecision {
 
 /// Order of convergence of a method with equal steps.
 #[derive(Clone, Debug, PartialEq)]
-pub(crate) struct MethodOrder {
+pub struct MethodOrder {
     /// Name of the method.
     pub method: String,
     /// Formal order.
@@ -107,7 +107,7 @@ const HALVINGS: usize = 3;
 
 impl WorkPrecision {
     /// The rows as CSV.
-    pub(crate) fn to_csv(&self) -> String {
+    pub fn to_csv(&self) -> String {
         let mut text = String::new();
         csv::write_record(&mut text, COLUMNS.into_iter());
         let plain = |x: f64| format!("{x:.6e}");
@@ -141,7 +141,7 @@ impl WorkPrecision {
 
     /// Orders of all methods with equal steps: the median over the finest halvings whose errors are
     /// small relative to the scene and above round-off.
-    pub(crate) fn orders(&self) -> Vec<MethodOrder> {
+    pub fn orders(&self) -> Vec<MethodOrder> {
         let mut names: Vec<&str> = Vec::new();
         for row in self.rows.iter().filter(|row| row.step.is_some()) {
             if !names.contains(&row.method.as_str()) {
@@ -169,7 +169,7 @@ impl WorkPrecision {
     }
 
     /// The orders as CSV.
-    pub(crate) fn orders_csv(&self) -> String {
+    pub fn orders_csv(&self) -> String {
         let mut text = String::new();
         let columns = [
             "problem",
@@ -199,7 +199,7 @@ impl WorkPrecision {
     }
 
     /// The text for the user: reference, time to an error by method, orders, notes.
-    pub(crate) fn text(&self) -> String {
+    pub fn text(&self) -> String {
         let mut text = format!(
             "{}: {} s, errors at the end against {}\n",
             self.problem,

@@ -16,6 +16,16 @@ fn help_and_version() {
         assert!(help.out.contains(word), "{word}\n{}", help.out);
     }
     assert!(help.out.contains("Exit codes: 0 done; 1 not converged"));
+    // One screen, the same by both options; the manual has the rest.
+    let lines = help.out.lines();
+    assert!(lines.clone().count() <= 50 && lines.clone().all(|line| line.chars().count() <= 112));
+    let first = lines.skip(1).find(|line| line.contains("optimize"));
+    assert!(first.is_some_and(|line| line.contains("optimize new")));
+    assert_eq!(help.out, expect(0, at.path(), &["-h"]).out);
+    let manual = expect(0, at.path(), &["manual"]).out.replace("\\-", "-");
+    for option in ["--memory", "--sensitivity", "--no-certificate", "--accuracy"] {
+        assert!(!help.out.contains(option) && manual.contains(option), "{option}");
+    }
     let version = expect(0, at.path(), &["--version"]);
     assert_eq!(
         version.out,
@@ -588,13 +598,13 @@ fn the_documents_name_commands_and_options_that_exist() {
         .filter(|word| word.chars().all(|c| c.is_ascii_lowercase() || c == '-'))
         .collect();
     assert!(commands.contains(&"work-precision"), "{commands:?}");
-    let mut known = plain.clone();
+    let mut known = plain.clone() + &help(&["manual"]).replace("\\-", "-");
     for command in commands.iter().filter(|command| **command != "help") {
         known += &help(&[command, "--help"]);
     }
     // Options of cargo, git and the linter.
     known += "--release --all-targets --no-deps --bench --test --lib --check --stat --locked --open \
-              --path --tool --threshold --auto --call-graph --nocapture --include-ignored";
+              --path --tool --threshold --auto --call-graph --nocapture --include-ignored --ignored";
     let options: Vec<&str> = known
         .split(|c: char| !(c.is_ascii_lowercase() || c == '-'))
         .collect();

@@ -1,10 +1,10 @@
 //! The time loops do not allocate, forwards and backwards: runs of n and of 2 n frozen steps make
 //! equal numbers of allocations, because memory for their history is reserved.
 
-use flexbody::adjoint::gradients;
-use flexbody::functions::Scene;
-use flexbody::integrate::{Grid, Method, Samples, Settings, Spacing, Start, simulate};
-use flexbody::problem::Problem;
+use flexbody_mechanics::adjoint::gradients;
+use flexbody_mechanics::functions::Scene;
+use flexbody_mechanics::integrate::{Grid, Method, Samples, Settings, Spacing, Start, simulate};
+use flexbody_problem::Problem;
 use std::path::Path;
 
 /// Allocations of this thread while `f` runs.

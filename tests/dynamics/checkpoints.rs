@@ -1,13 +1,13 @@
 //! Gradients with repeated steps equal those with stored steps, and repeat as many as binomial
 //! checkpointing says.
 
-use crate::tests::reference::documents::problem;
-use flexbody::adjoint::gradients;
-use flexbody::driver::evaluate::Evaluated;
-use flexbody::driver::integration::Integration;
-use flexbody::functions::Scene;
-use flexbody::integrate::schedule::{Schedule, advances};
-use flexbody::integrate::{
+use crate::reference::documents::problem;
+use flexbody_driver::evaluate::Evaluated;
+use flexbody_driver::integration::Integration;
+use flexbody_mechanics::adjoint::gradients;
+use flexbody_mechanics::functions::Scene;
+use flexbody_mechanics::integrate::schedule::{Schedule, advances};
+use flexbody_mechanics::integrate::{
     MEMORY, Method, Samples, Settings, Spacing, Start, Tape, Trajectory, simulate,
 };
 use serde_json::Value;

@@ -6,12 +6,12 @@
 //! conserves linear momentum, which is linear in the velocities, to round-off at any step. Energy
 //! and angular momentum are quadratic: the equations conserve them, BDF only up to its order.
 
-use crate::tests::reference;
+use crate::reference;
 
-use flexbody::math::{Mat3, Vec3, rotation};
-use flexbody::model::{JointKind, Mobility, Model, RigidBody};
-use flexbody::system::initial::velocity_correction;
-use flexbody::system::observe::{Observation, observe};
+use flexbody_mathematics::math::{Mat3, Vec3, rotation};
+use flexbody_mechanics::model::{JointKind, Mobility, Model, RigidBody};
+use flexbody_mechanics::system::initial::velocity_correction;
+use flexbody_mechanics::system::observe::{Observation, observe};
 use reference::models::{KINDS, free_pair};
 use reference::{bdf, observed_order};
 

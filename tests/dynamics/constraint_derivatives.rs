@@ -6,19 +6,19 @@
 //! agrees to 1e-12 of its largest entry. `rows_agree` (tests/reference/cases.rs) compares G, rates
 //! and biases.
 
-use crate::tests::reference;
+use crate::reference;
 
-use flexbody::integrate::implicit::ggl::{Equations, StepState};
-use flexbody::linalg::{Pattern, SparseMatrix};
-use flexbody::math::{Complex64, Mat3, Parameters, rotation};
-use flexbody::model::Model;
-use flexbody::system::InMotion;
-use flexbody::system::bodies::{self, BodyMotion, rates, velocity_of_rates};
-use flexbody::system::initial;
-use flexbody::system::joints::{self, JointCotangent, RowCotangents, rate_by_position};
-use flexbody::system::kkt::SaddlePoint;
-use flexbody::system::reaction::ReactionJacobian;
-use flexbody::system::side::sides;
+use flexbody_mathematics::linalg::{Pattern, SparseMatrix};
+use flexbody_mathematics::math::{Complex64, Mat3, Parameters, rotation};
+use flexbody_mechanics::integrate::implicit::ggl::{Equations, StepState};
+use flexbody_mechanics::model::Model;
+use flexbody_mechanics::system::InMotion;
+use flexbody_mechanics::system::bodies::{self, BodyMotion, rates, velocity_of_rates};
+use flexbody_mechanics::system::initial;
+use flexbody_mechanics::system::joints::{self, JointCotangent, RowCotangents, rate_by_position};
+use flexbody_mechanics::system::kkt::SaddlePoint;
+use flexbody_mechanics::system::reaction::ReactionJacobian;
+use flexbody_mechanics::system::side::sides;
 use nalgebra::DMatrix;
 use reference::cases::{Case, TIME, cases, dot, lift, parameters, rows_agree, slopes, step, unit};
 

@@ -3,11 +3,11 @@
 //! A disc of inertia J on a torsion spring k swings as φ(t) = φ0 + (φ(0) − φ0) cos ωt + φ̇(0)/ω sin ωt, ω = √(k/J). Free
 //! discs turn by φ(0) + φ̇ t.
 
-use crate::tests::reference::documents::{problem as parsed, run};
-use crate::tests::reference::gradients::gradients_are_exact;
+use crate::reference::documents::{problem as parsed, run};
+use crate::reference::gradients::gradients_are_exact;
 use flexbody::Analysis;
-use flexbody::driver::simulate;
-use flexbody::problem::Problem;
+use flexbody_driver::simulate;
+use flexbody_problem::Problem;
 use serde_json::Value;
 use std::f64::consts::PI;
 

@@ -3,9 +3,9 @@
 //! A slider of a crank r and a rod l, on the line of the crank's axle, cannot move at first where both are stretched
 //! (x = r + l) or folded (x = l − r); a rocker where crank and coupler are in line.
 
-use crate::tests::reference::documents::problem as parsed;
-use flexbody::driver::simulate;
-use flexbody::problem::Problem;
+use crate::reference::documents::problem as parsed;
+use flexbody_driver::simulate;
+use flexbody_problem::Problem;
 use serde_json::Value;
 
 fn bar(length: f64, at: [f64; 2], angle: f64) -> Value {

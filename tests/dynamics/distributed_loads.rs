@@ -1,13 +1,15 @@
 //! Pressures and dead loads on bodies of elements: resultants in closed form, and every derivative by the complex step.
 
-use crate::tests::reference;
+use crate::reference;
 
-use flexbody::integrate::{Method, Settings, simulate};
-use flexbody::math::{Complex64, Parameters, Scalar, Vec3};
-use flexbody::model::{Axes, DistributedLoad, Form, Load, LoadKind, Model, Spread, TimeFunction};
-use flexbody::structures::loads::edge_shares;
-use flexbody::system::loads::{self, LoadCotangent};
-use flexbody::system::{InMotion, Numbering, bodies, placement};
+use flexbody_mathematics::math::{Complex64, Parameters, Scalar, Vec3};
+use flexbody_mechanics::integrate::{Method, Settings, simulate};
+use flexbody_mechanics::model::{
+    Axes, DistributedLoad, Form, Load, LoadKind, Model, Spread, TimeFunction,
+};
+use flexbody_mechanics::structures::loads::edge_shares;
+use flexbody_mechanics::system::loads::{self, LoadCotangent};
+use flexbody_mechanics::system::{InMotion, Numbering, bodies, placement};
 use reference::cases::{Case, TIME, dot, lift, parameters, slopes, unit};
 use reference::models::{Numbers, alone};
 use reference::shells::{
@@ -75,7 +77,7 @@ fn pull_backs() {
             .map(|&j| power(&model, &case.moved(&unit(nv, j)), time))
             .collect();
         case.assert("by positions", &given, &exact);
-        let later = Complex64::new(TIME, flexbody::math::scalar::COMPLEX_STEP);
+        let later = Complex64::new(TIME, flexbody_mathematics::math::scalar::COMPLEX_STEP);
         case.assert("by time", &[by_time], &[power(&model, &q, later)]);
         let exact = case.by_parameters(|model| power(model, &q, time));
         case.assert("by parameters", &parameters(&cot), &exact);

@@ -1,11 +1,11 @@
 //! Joints and drives in problem files: exact gradients in every number of every kind of drive, by
 //! several methods, and the faults of wrong entries.
 
-use crate::tests::numbers;
-use crate::tests::reference::documents::problem;
+use crate::numbers;
+use crate::reference::documents::problem;
 
-use flexbody::driver::check;
-use flexbody::problem::Problem;
+use flexbody_driver::check;
+use flexbody_problem::Problem;
 use numbers::numbers;
 use serde_json::Value;
 

@@ -1,7 +1,7 @@
 //! Notes on drives that start at speed while their bodies rest: which joint, by how much, and the energy of the impulse.
 
-use crate::tests::reference::documents::problem as parsed;
-use flexbody::driver::start::notes;
+use crate::reference::documents::problem as parsed;
+use flexbody_driver::start::notes;
 use serde_json::Value;
 use std::f64::consts::FRAC_PI_2;
 

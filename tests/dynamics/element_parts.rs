@@ -1,21 +1,21 @@
 //! Beams, lumped masses and damping of bodies of elements: energies against the elements of statics and against sums
 //! over points, momenta, and what damping leaves alone.
 
-use crate::tests::reference;
+use crate::reference;
 
-use flexbody::integrate::{Method, Settings, Trajectory, simulate};
-use flexbody::math::{Mat3, Vec3};
-use flexbody::model::finite::FiniteElements;
-use flexbody::model::{Form, Model};
-use flexbody::structures::beam::{BeamMotion, Section, SectionValues};
-use flexbody::structures::floating::{FrameNodes, Surface, element_mesh};
-use flexbody::structures::generate::straight_beam;
-use flexbody::structures::lumped_mass::LumpedMass;
-use flexbody::structures::material::Material;
-use flexbody::structures::parts::{coordinates, of_beam, of_mass};
-use flexbody::structures::structure::Structure;
-use flexbody::system::bodies::BodyMotion;
-use flexbody::system::{Numbering, finite, placement};
+use flexbody_mathematics::math::{Mat3, Vec3};
+use flexbody_mechanics::integrate::{Method, Settings, Trajectory, simulate};
+use flexbody_mechanics::model::finite::FiniteElements;
+use flexbody_mechanics::model::{Form, Model};
+use flexbody_mechanics::structures::beam::{BeamMotion, Section, SectionValues};
+use flexbody_mechanics::structures::floating::{FrameNodes, Surface, element_mesh};
+use flexbody_mechanics::structures::generate::straight_beam;
+use flexbody_mechanics::structures::lumped_mass::LumpedMass;
+use flexbody_mechanics::structures::material::Material;
+use flexbody_mechanics::structures::parts::{coordinates, of_beam, of_mass};
+use flexbody_mechanics::structures::structure::Structure;
+use flexbody_mechanics::system::bodies::BodyMotion;
+use flexbody_mechanics::system::{Numbering, finite, placement};
 use reference::flexible::totals;
 use reference::models::{Numbers, alone};
 use reference::shells::{any_beam, elastic_at_end, stiffened};

@@ -1,13 +1,13 @@
 //! The elimination by the tree of joints, loops last, agrees with sparse LU of the same matrix.
 
-use flexbody::linalg::SolveScalar;
-use flexbody::math::Complex64;
-use flexbody::model::Model;
-use flexbody::problem::Problem;
-use flexbody::system::accelerations::Accelerations;
-use flexbody::system::initial::mass;
-use flexbody::system::kkt::{Metric, SaddlePoint};
-use flexbody::system::{BodyMotion, InMotion, Numbering};
+use flexbody_mathematics::linalg::SolveScalar;
+use flexbody_mathematics::math::Complex64;
+use flexbody_mechanics::model::Model;
+use flexbody_mechanics::system::accelerations::Accelerations;
+use flexbody_mechanics::system::initial::mass;
+use flexbody_mechanics::system::kkt::{Metric, SaddlePoint};
+use flexbody_mechanics::system::{BodyMotion, InMotion, Numbering};
+use flexbody_problem::Problem;
 use std::path::Path;
 
 /// Problems, and the number of joints of each that close loops.
@@ -72,7 +72,7 @@ fn differences<S: SolveScalar>(name: &str, model: &Model<S>, closing: usize) -> 
         .map(S::from)
         .collect();
     // Neither system contains what the mobilities do not admit.
-    flexbody::system::reduce::project(&numbering, &mut right);
+    flexbody_mechanics::system::reduce::project(&numbering, &mut right);
     let (mut by_tree, mut by_lu) = (right.clone(), right);
     field.solve(&mut by_tree);
     saddle.solve(&mut by_lu);

@@ -3,9 +3,9 @@
 //! A mass on such a spring has x(t) = x0 cos ωt + v/ω sin ωt in each direction, ω = √(k/m). With k3 alone and v at x = 0 it
 //! turns round where ¼ k3 x⁴ = ½ m v².
 
-use crate::tests::reference::documents::{problem as parsed, run};
-use crate::tests::reference::gradients::gradients_are_exact;
-use flexbody::problem::Problem;
+use crate::reference::documents::{problem as parsed, run};
+use crate::reference::gradients::gradients_are_exact;
+use flexbody_problem::Problem;
 use serde_json::Value;
 
 /// A mass of 2 kg at `at` with a velocity, on a spring to the origin.

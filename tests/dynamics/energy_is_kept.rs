@@ -1,19 +1,19 @@
 //! The check of energy: no correct run of a conservative scene is rejected, and a run with wrong
 //! states is.
 
-use crate::tests::reference::models::{KINDS, Numbers, joint};
+use crate::reference::models::{KINDS, Numbers, joint};
 
-use flexbody::integrate::energy::{Ledger, Supply};
-use flexbody::integrate::scale::Scale;
-use flexbody::integrate::{
+use flexbody_mathematics::math::{Complex64, Parameters, Vec3};
+use flexbody_mechanics::integrate::energy::{Ledger, Supply};
+use flexbody_mechanics::integrate::scale::Scale;
+use flexbody_mechanics::integrate::{
     Grid, IntegrationFailure, Method, Settings, Spacing, Trajectory, simulate,
 };
-use flexbody::math::{Complex64, Parameters, Vec3};
-use flexbody::model::{
+use flexbody_mechanics::model::{
     Axes, DegreeOfFreedom, Drive, JointKind, Load, LoadKind, Model, TimeFunction,
 };
-use flexbody::system::BodyMotion;
-use flexbody::system::accelerations::Accelerations;
+use flexbody_mechanics::system::BodyMotion;
+use flexbody_mechanics::system::accelerations::Accelerations;
 
 /// A tree of one to four bodies on random joints, with and without gravity, with springs of
 /// stiffness 1 to 1e5 between points and about hinges, in lengths of `unit` \[m\].
@@ -264,7 +264,8 @@ fn loaded(seed: u64, unit: f64) -> (Model<f64>, f64) {
             model.loads.push(Load { name, kind });
         }
     }
-    let turns = |joint: &&mut flexbody::model::Joint<f64>| joint.kind == JointKind::Revolute;
+    let turns =
+        |joint: &&mut flexbody_mechanics::model::Joint<f64>| joint.kind == JointKind::Revolute;
     if seed % 4 >= 2
         && let Some(joint) = model.joints.iter_mut().find(turns)
     {

@@ -4,14 +4,14 @@
 //! these steps halved again gives its uncertainty, which includes 1e-13 of the value. A number is
 //! omitted if its true error is below ten times the uncertainty: it is round-off.
 
-use crate::tests::reference::documents::problem;
-use flexbody::driver::Evaluated;
-use flexbody::driver::accuracy::{Judged, reach};
-use flexbody::driver::error::estimate;
-use flexbody::integrate::{
+use crate::reference::documents::problem;
+use flexbody_driver::Evaluated;
+use flexbody_driver::accuracy::{Judged, reach};
+use flexbody_driver::error::estimate;
+use flexbody_mechanics::integrate::{
     LinearSolver, MEMORY, Method, Samples, Settings, Spacing, Start, simulate,
 };
-use flexbody::problem::Problem;
+use flexbody_problem::Problem;
 use serde_json::Value;
 use std::path::Path;
 
@@ -507,7 +507,7 @@ fn samples_that_miss_a_sharp_peak_are_known_to() {
         if let Some(samples) = samples {
             file["simulation"]["samples"] = json!(samples);
         }
-        let problem = crate::tests::reference::documents::problem(&file);
+        let problem = crate::reference::documents::problem(&file);
         let at = Evaluated::new(&problem, &problem.start()).expect("runs");
         let found = estimate(&problem, &at, &[0, 1], false).expect("runs");
         let a = rho * speed.abs();
@@ -590,7 +590,7 @@ fn integrals_of_round_off_take_no_more_samples_than_others() {
                 "simulation": {"duration": size.sqrt(), "tolerance": 1e-9, "method": method},
                 "functions": {"zero": {"integral": of}}
             });
-            let problem = crate::tests::reference::documents::problem(&file);
+            let problem = crate::reference::documents::problem(&file);
             let at = Evaluated::new(&problem, &problem.start()).expect("runs");
             let cells = at.run.grid.all_cells().iter().max();
             assert!(

@@ -1,12 +1,12 @@
 //! Runs that end at an event: closed forms of time, position and derivatives, and gradients against
 //! the complex step by several methods.
 
-use crate::tests::reference::documents::{self, problem};
-use flexbody::driver::integration::Integration;
-use flexbody::driver::{Evaluated, Optimisation, check, simulate};
-use flexbody::integrate::IntegrationFailure;
-use flexbody::problem::Problem;
-use flexbody::report::{Optimum, summary};
+use crate::reference::documents::{self, problem};
+use flexbody_driver::integration::Integration;
+use flexbody_driver::{Evaluated, Optimisation, check, simulate};
+use flexbody_mechanics::integrate::IntegrationFailure;
+use flexbody_problem::Problem;
+use flexbody_report::{Optimum, summary};
 use serde_json::Value;
 
 /// A ball is thrown up and forward, until it returns to a height.

@@ -1,18 +1,18 @@
 //! Bodies of shells as finite elements: forces and energies against the elements of statics and against sums
 //! over points, and the motion of free bodies.
 
-use crate::tests::reference;
+use crate::reference;
 
-use flexbody::integrate::{Method, Settings, Trajectory, simulate};
-use flexbody::math::Vec3;
-use flexbody::model::{Form, Inertia, Model};
-use flexbody::structures::shell::basis::TABLES;
-use flexbody::structures::shell::{Field, Motion, NODES, Terms};
-use flexbody::structures::state::Configuration;
-use flexbody::structures::supports::{AtNode, NodeUnknowns, Rotations, Unknowns};
-use flexbody::system::bodies::{BodyMotion, all_force_balances};
-use flexbody::system::marker::{MarkerKinematics, RelativeMotion};
-use flexbody::system::{Numbering, finite, flexible, placement};
+use flexbody_mathematics::math::Vec3;
+use flexbody_mechanics::integrate::{Method, Settings, Trajectory, simulate};
+use flexbody_mechanics::model::{Form, Inertia, Model};
+use flexbody_mechanics::structures::shell::basis::TABLES;
+use flexbody_mechanics::structures::shell::{Field, Motion, NODES, Terms};
+use flexbody_mechanics::structures::state::Configuration;
+use flexbody_mechanics::structures::supports::{AtNode, NodeUnknowns, Rotations, Unknowns};
+use flexbody_mechanics::system::bodies::{BodyMotion, all_force_balances};
+use flexbody_mechanics::system::marker::{MarkerKinematics, RelativeMotion};
+use flexbody_mechanics::system::{Numbering, finite, flexible, placement};
 use reference::flexible::totals;
 use reference::models::Numbers;
 use reference::shells::{Shells, elastic_at_end, shells};
@@ -90,12 +90,15 @@ fn elastic_energy_is_that_of_the_shells() {
         assert!((energy - exact).abs() < 1e-12 * exact, "{energy} {exact}");
         let mut force = vec![0.0; q.len()];
         finite::add_forces(own, &q, &mut force);
-        let lifted = flexbody::math::Parameters::map(own, &mut flexbody::math::Complex64::from);
+        let lifted = flexbody_mathematics::math::Parameters::map(
+            own,
+            &mut flexbody_mathematics::math::Complex64::from,
+        );
         let largest = force.iter().fold(0.0_f64, |m, f| m.max(f.abs()));
         for (j, force) in force.iter().enumerate() {
             let mut q: Vec<_> = q
                 .iter()
-                .map(|&q| flexbody::math::Complex64::new(q, 0.0))
+                .map(|&q| flexbody_mathematics::math::Complex64::new(q, 0.0))
                 .collect();
             q[j].im = 1e-30;
             let slope = finite::energy(&lifted, &q).im / 1e-30;

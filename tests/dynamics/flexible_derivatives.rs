@@ -1,19 +1,21 @@
 //! Inertial and elastic forces of flexible bodies against sums over points with masses, and every
 //! derivative against the complex step, at random states of random bodies of 1 to 7 coordinates.
 
-use crate::tests::reference;
+use crate::reference;
 
-use flexbody::functions::instant::DeformationKind;
-use flexbody::functions::snapshot::{Snapshot, SnapshotCotangent};
-use flexbody::functions::{EnergyPart, Instant, Rows};
-use flexbody::integrate::implicit::ggl::{Equations, StepState};
-use flexbody::linalg::SparseMatrix;
-use flexbody::math::{Complex64, Parameters, Scalar, Vec3};
-use flexbody::model::{Form, Inertia, Model};
-use flexbody::system::bodies::{BodyMotion, all_force_balances, rates, velocity_of_rates};
-use flexbody::system::kkt::SaddlePoint;
-use flexbody::system::marker::{MarkerKinematics, RelativeMotion};
-use flexbody::system::{Numbering, flexible, initial, placement};
+use flexbody_mathematics::linalg::SparseMatrix;
+use flexbody_mathematics::math::{Complex64, Parameters, Scalar, Vec3};
+use flexbody_mechanics::functions::instant::DeformationKind;
+use flexbody_mechanics::functions::snapshot::{Snapshot, SnapshotCotangent};
+use flexbody_mechanics::functions::{EnergyPart, Instant, Rows};
+use flexbody_mechanics::integrate::implicit::ggl::{Equations, StepState};
+use flexbody_mechanics::model::{Form, Inertia, Model};
+use flexbody_mechanics::system::bodies::{
+    BodyMotion, all_force_balances, rates, velocity_of_rates,
+};
+use flexbody_mechanics::system::kkt::SaddlePoint;
+use flexbody_mechanics::system::marker::{MarkerKinematics, RelativeMotion};
+use flexbody_mechanics::system::{Numbering, flexible, initial, placement};
 use reference::cases::{Case, TIME, dot, lift, parameters, rows_agree, slopes, step, unit};
 use reference::flexible::{Points, modal, quadratic, stiffness, swing_of, totals};
 use reference::models::Numbers;

@@ -2,12 +2,12 @@
 //! start, mass, shapes, stiffness, strains, damping, attachments.
 
 use super::gradients_match_complex_step::{compare, explicit, functions, implicit};
-use crate::tests::reference;
+use crate::reference;
 
-use flexbody::functions::instant::DeformationKind;
-use flexbody::functions::{Bound, Function, Instant, Reduction, Scene};
-use flexbody::integrate::{Method, Settings, Start};
-use flexbody::model::Model;
+use flexbody_mechanics::functions::instant::DeformationKind;
+use flexbody_mechanics::functions::{Bound, Function, Instant, Reduction, Scene};
+use flexbody_mechanics::integrate::{Method, Settings, Start};
+use flexbody_mechanics::model::Model;
 use reference::flexible::{quadratic, swing, swing_of};
 use reference::models::Numbers;
 

@@ -1,17 +1,17 @@
 //! Motions of flexible bodies: what is conserved, what does not depend on the observer, and the limit of
 //! a stiff body.
 
-use crate::tests::reference;
+use crate::reference;
 
-use flexbody::adjoint::gradients;
-use flexbody::functions::{Function, Instant, Reduction, Scene};
-use flexbody::integrate::{Method, Settings, Spacing, Trajectory, simulate};
-use flexbody::lower::Plane;
-use flexbody::math::{Vec3, rotation};
-use flexbody::model::flexible::ModalStiffness;
-use flexbody::model::{Mobility, Model};
-use flexbody::system::Numbering;
-use flexbody::system::observe::{Observation, observe};
+use flexbody_mathematics::math::{Vec3, rotation};
+use flexbody_mechanics::adjoint::gradients;
+use flexbody_mechanics::functions::{Function, Instant, Reduction, Scene};
+use flexbody_mechanics::integrate::{Method, Settings, Spacing, Trajectory, simulate};
+use flexbody_mechanics::lower::Plane;
+use flexbody_mechanics::model::flexible::ModalStiffness;
+use flexbody_mechanics::model::{Mobility, Model};
+use flexbody_mechanics::system::Numbering;
+use flexbody_mechanics::system::observe::{Observation, observe};
 use reference::flexible::{Points, modal, modal_of, planar_swing, stiffness, swing_from, swing_of};
 use reference::models::{Numbers, alone};
 
@@ -130,7 +130,7 @@ fn methods_agree() {
         let explicit = run(&model, 0.5, Method::Dop853, Spacing::Tolerance(1e-10));
         let bdf = Method::Bdf {
             order: 2,
-            start: flexbody::integrate::Start::Radau,
+            start: flexbody_mechanics::integrate::Start::Radau,
         };
         let alpha = Method::GeneralisedAlpha { radius: 0.8 };
         for (method, spacing, most) in [

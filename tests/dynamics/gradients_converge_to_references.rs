@@ -6,8 +6,8 @@
 //! confirm them to 1e-11. At a maximum the derivative in time vanishes, so its gradient is that of
 //! the value at its instant t*. Errors are relative, each component to its own size.
 
-use flexbody::driver::evaluate::Evaluated;
-use flexbody::problem::Problem;
+use flexbody_driver::evaluate::Evaluated;
+use flexbody_problem::Problem;
 use serde_json::Value;
 
 /// A file of the package as JSON.

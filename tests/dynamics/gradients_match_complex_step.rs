@@ -1,15 +1,17 @@
 //! The adjoint gives the exact derivative of every function in every parameter of a scene.
 
-use crate::tests::reference;
+use crate::reference;
 
-use flexbody::adjoint::gradients;
-use flexbody::functions::{
+use flexbody_mathematics::math::{Complex64, Parameters, Vec3, scalar::COMPLEX_STEP};
+use flexbody_mechanics::adjoint::gradients;
+use flexbody_mechanics::functions::{
     Bound, EnergyPart, Function, Gate, GateSide, Instant, Projectile, Reduction, Release, Rotation,
     Scene,
 };
-use flexbody::integrate::{Method, Samples, Settings, Spacing, Start, Trajectory, simulate};
-use flexbody::math::{Complex64, Parameters, Vec3, scalar::COMPLEX_STEP};
-use flexbody::model::{JointKind, Model};
+use flexbody_mechanics::integrate::{
+    Method, Samples, Settings, Spacing, Start, Trajectory, simulate,
+};
+use flexbody_mechanics::model::{JointKind, Model};
 
 /// Every instant quantity and every reduction, at least once each.
 pub(super) fn functions(body: usize, gate_body: usize) -> Vec<Function<f64>> {

@@ -4,19 +4,19 @@
 //! Residuals are round-off, 1e-12 in SI units for bodies of about 2 kg and 1 m. The nearest state
 //! is checked by its definition, against other states that the joints allow.
 
-use crate::tests::reference;
+use crate::reference;
 
-use flexbody::integrate::IntegrationFailure;
-use flexbody::integrate::{Method, Settings, simulate};
-use flexbody::math::{Mat3, Vec3, rotation};
-use flexbody::model::{JointFrame, JointKind, Model, RigidBody};
-use flexbody::system::InMotion;
-use flexbody::system::bodies::{BodyMotion, all_force_balances, mass_product};
-use flexbody::system::failure::AssemblyFailure;
-use flexbody::system::initial::{self, InitialState};
-use flexbody::system::kkt::SaddlePoint;
-use flexbody::system::placement;
-use flexbody::system::{Numbering, joints};
+use flexbody_mathematics::math::{Mat3, Vec3, rotation};
+use flexbody_mechanics::integrate::IntegrationFailure;
+use flexbody_mechanics::integrate::{Method, Settings, simulate};
+use flexbody_mechanics::model::{JointFrame, JointKind, Model, RigidBody};
+use flexbody_mechanics::system::InMotion;
+use flexbody_mechanics::system::bodies::{BodyMotion, all_force_balances, mass_product};
+use flexbody_mechanics::system::failure::AssemblyFailure;
+use flexbody_mechanics::system::initial::{self, InitialState};
+use flexbody_mechanics::system::kkt::SaddlePoint;
+use flexbody_mechanics::system::placement;
+use flexbody_mechanics::system::{Numbering, joints};
 use reference::models::{KINDS, Numbers, free_pair, joint, rod};
 
 fn solve(model: &Model<f64>) -> Result<InitialState<f64>, AssemblyFailure> {

@@ -3,17 +3,17 @@
 //!
 //! Bodies have about 1 m, 1 kg and 1 rad/s. Differences are round-off, 1e-12.
 
-use crate::tests::reference::documents::problem;
-use crate::tests::reference::models::Numbers;
-use flexbody::driver::{check, simulate, start::notes};
-use flexbody::math::rotation::{from_axis_angle, matrix};
-use flexbody::math::{Mat3, Vec3};
-use flexbody::model::{Model, RigidBody};
-use flexbody::problem::Problem;
-use flexbody::system::InMotion;
-use flexbody::system::initial;
-use flexbody::system::kkt::SaddlePoint;
-use flexbody::system::{BodyMotion, Numbering, joints};
+use crate::reference::documents::problem;
+use crate::reference::models::Numbers;
+use flexbody_driver::{check, simulate, start::notes};
+use flexbody_mathematics::math::rotation::{from_axis_angle, matrix};
+use flexbody_mathematics::math::{Mat3, Vec3};
+use flexbody_mechanics::model::{Model, RigidBody};
+use flexbody_mechanics::system::InMotion;
+use flexbody_mechanics::system::initial;
+use flexbody_mechanics::system::kkt::SaddlePoint;
+use flexbody_mechanics::system::{BodyMotion, Numbering, joints};
+use flexbody_problem::Problem;
 use serde_json::Value;
 
 /// Position and velocity of a body, ground axes.

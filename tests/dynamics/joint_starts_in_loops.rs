@@ -3,19 +3,19 @@
 //! Mechanisms have about 1 m, 1 kg and 1 s. Differences are round-off, 1e-12, unless stated.
 
 use super::joint_starts::{State, list, named, shuffle, started};
-use crate::tests::reference::documents::problem;
-use crate::tests::reference::models::Numbers;
-use flexbody::driver::{check, simulate};
-use flexbody::integrate::IntegrationFailure;
-use flexbody::math::rotation::{from_axis_angle, matrix};
-use flexbody::math::scalar::COMPLEX_STEP;
-use flexbody::math::{Complex64, Dual, Scalar, Vec3};
-use flexbody::model::{DegreeOfFreedom, Drive, Model, TimeFunction};
-use flexbody::problem::Problem;
-use flexbody::system::Numbering;
-use flexbody::system::initial;
-use flexbody::system::kkt::SaddlePoint;
-use flexbody::system::placement;
+use crate::reference::documents::problem;
+use crate::reference::models::Numbers;
+use flexbody_driver::{check, simulate};
+use flexbody_mathematics::math::rotation::{from_axis_angle, matrix};
+use flexbody_mathematics::math::scalar::COMPLEX_STEP;
+use flexbody_mathematics::math::{Complex64, Dual, Scalar, Vec3};
+use flexbody_mechanics::integrate::IntegrationFailure;
+use flexbody_mechanics::model::{DegreeOfFreedom, Drive, Model, TimeFunction};
+use flexbody_mechanics::system::Numbering;
+use flexbody_mechanics::system::initial;
+use flexbody_mechanics::system::kkt::SaddlePoint;
+use flexbody_mechanics::system::placement;
+use flexbody_problem::Problem;
 use serde_json::Value;
 
 /// Crank, coupler, rocker and distance of the pivots of a four-bar linkage.

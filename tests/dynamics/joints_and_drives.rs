@@ -1,7 +1,7 @@
 //! Joints and drives in problem files: motions in closed form.
 
-use crate::tests::reference::documents::problem;
-use flexbody::driver::simulate;
+use crate::reference::documents::problem;
+use flexbody_driver::simulate;
 use serde_json::Value;
 use std::f64::consts::{FRAC_PI_4, TAU};
 

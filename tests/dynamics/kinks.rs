@@ -1,11 +1,11 @@
 //! Loads and drives with kinks in time, where the end of the motion moves: its duration is designed, or
 //! it ends at an event. Steps stay on the kinks. Closed forms of a pushed mass, by all methods.
 
-use crate::tests::reference::documents::problem;
-use flexbody::driver::integration::Integration;
-use flexbody::driver::{Evaluated, check};
-use flexbody::integrate::Grid;
-use flexbody::problem::Problem;
+use crate::reference::documents::problem;
+use flexbody_driver::integration::Integration;
+use flexbody_driver::{Evaluated, check};
+use flexbody_mechanics::integrate::Grid;
+use flexbody_problem::Problem;
 use serde_json::Value;
 
 /// A mass on a slide, pushed by the force of a table.

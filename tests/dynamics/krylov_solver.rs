@@ -1,12 +1,14 @@
 //! The Krylov solver of steps of finite elements gives the answers of the direct one.
 
-use crate::tests::files::finite_elements::plates;
-use crate::tests::reference::documents::problem as parsed;
-use crate::tests::reference::gradients::{scaled_gradients_are_exact, thick_and_soft};
+use crate::reference::documents::plates;
+use crate::reference::documents::problem as parsed;
+use crate::reference::gradients::{scaled_gradients_are_exact, thick_and_soft};
 use flexbody::Analysis;
-use flexbody::adjoint::gradients;
-use flexbody::integrate::{LinearSolver, MEMORY, Method, Settings, Start, WorkCounts, simulate};
-use flexbody::math::{Vec3, rotation};
+use flexbody_mathematics::math::{Vec3, rotation};
+use flexbody_mechanics::adjoint::gradients;
+use flexbody_mechanics::integrate::{
+    LinearSolver, MEMORY, Method, Settings, Start, WorkCounts, simulate,
+};
 use serde_json::Value;
 use std::f64::consts::FRAC_PI_2;
 

@@ -1,13 +1,13 @@
 //! Scenes at the limits of round-off. They run if their motion is determined; otherwise they stop
 //! after a bounded number of tries.
 
-use crate::tests::reference::models::Numbers;
-use flexbody::driver::simulate;
-use flexbody::integrate::control::Controller;
-use flexbody::integrate::headway::Stop;
-use flexbody::integrate::scale::Scale;
-use flexbody::integrate::{Method, Settings, Spacing};
-use flexbody::problem::{Override, Problem};
+use crate::reference::models::Numbers;
+use flexbody_driver::simulate;
+use flexbody_mechanics::integrate::control::Controller;
+use flexbody_mechanics::integrate::headway::Stop;
+use flexbody_mechanics::integrate::scale::Scale;
+use flexbody_mechanics::integrate::{Method, Settings, Spacing};
+use flexbody_problem::{Override, Problem};
 use serde_json::Value;
 use std::path::Path;
 

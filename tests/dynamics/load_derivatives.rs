@@ -5,21 +5,21 @@
 //! The joints are open and their frames skew, so that no term is hidden. A list of derivatives
 //! agrees to 1e-12 of its largest entry or of 0.01, as some vanish among forces of order one.
 
-use crate::tests::reference;
+use crate::reference;
 
-use flexbody::integrate::implicit::ggl::{Equations, StepState};
-use flexbody::linalg::{Emit, SparseMatrix};
-use flexbody::math::scalar::COMPLEX_STEP;
-use flexbody::math::{Complex64, Parameters, Scalar};
-use flexbody::model::Interpolation;
-use flexbody::model::{
+use flexbody_mathematics::linalg::{Emit, SparseMatrix};
+use flexbody_mathematics::math::scalar::COMPLEX_STEP;
+use flexbody_mathematics::math::{Complex64, Parameters, Scalar};
+use flexbody_mechanics::integrate::implicit::ggl::{Equations, StepState};
+use flexbody_mechanics::model::Interpolation;
+use flexbody_mechanics::model::{
     Axes, DegreeOfFreedom, JointKind, Load, LoadKind, Model, Smoothness, TimeFunction,
 };
-use flexbody::system::InMotion;
-use flexbody::system::initial;
-use flexbody::system::kkt::SaddlePoint;
-use flexbody::system::loads::{self, LoadCotangent, LoadEntries};
-use flexbody::system::{Numbering, bodies};
+use flexbody_mechanics::system::InMotion;
+use flexbody_mechanics::system::initial;
+use flexbody_mechanics::system::kkt::SaddlePoint;
+use flexbody_mechanics::system::loads::{self, LoadCotangent, LoadEntries};
+use flexbody_mechanics::system::{Numbering, bodies};
 use nalgebra::DMatrix;
 use reference::cases::{Case, case, dot, lift, parameters, slopes, step, unit};
 use reference::models::Numbers;

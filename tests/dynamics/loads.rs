@@ -1,10 +1,10 @@
 //! Loads in problem files: exact gradients in every number of every kind of load, and motions in
 //! closed form.
 
-use crate::tests::numbers;
+use crate::numbers;
 
-use flexbody::driver::{check, simulate};
-use flexbody::problem::Problem;
+use flexbody_driver::{check, simulate};
+use flexbody_problem::Problem;
 use numbers::numbers;
 use serde_json::Value;
 

@@ -5,13 +5,13 @@
 //! sixteen bars (1 s). `reference` states the origin and accuracy of their references. All
 //! tolerances are on the largest error over all bodies and reference instants.
 
-use crate::tests::reference;
+use crate::reference;
 
-use flexbody::integrate::{
+use flexbody_mechanics::integrate::{
     LinearSolver, Method, Samples, Settings, Spacing, Start, Trajectory, simulate,
 };
-use flexbody::model::Model;
-use flexbody::system::observe::observe;
+use flexbody_mechanics::model::Model;
+use flexbody_mechanics::system::observe::observe;
 use reference::{Instant, bdf, motion_error, observed_order, reaction_error, rising};
 
 /// A scene, its duration [s] and the largest of three step sizes [s]. Each is half of the one

@@ -1,15 +1,15 @@
 //! What an inexact Newton step of shells would cost by GMRES with the factors of an earlier step as right
 //! preconditioner (FGMRES with a constant preconditioner, Saad 1993), beside new factors of the same matrix.
 
-use crate::tests::reference;
+use crate::reference;
 
-use flexbody::integrate::implicit::ggl::{Equations, StepState};
-use flexbody::linalg::gmres::gmres;
-use flexbody::linalg::{SparseLu, SparseMatrix};
-use flexbody::math::Vec3;
-use flexbody::math::slices::dot;
-use flexbody::model::{Form, Model};
-use flexbody::system::{Numbering, placement};
+use flexbody_mathematics::linalg::gmres::gmres;
+use flexbody_mathematics::linalg::{SparseLu, SparseMatrix};
+use flexbody_mathematics::math::Vec3;
+use flexbody_mathematics::math::slices::dot;
+use flexbody_mechanics::integrate::implicit::ggl::{Equations, StepState};
+use flexbody_mechanics::model::{Form, Model};
+use flexbody_mechanics::system::{Numbering, placement};
 use reference::models::{Numbers, alone};
 use reference::shells::aluminium_plate;
 use std::time::Instant;

@@ -1,10 +1,10 @@
 //! The kinematics q̇ = v of nodes, which solutions leave out where they hold.
 
-use crate::tests::reference;
+use crate::reference;
 
-use flexbody::integrate::implicit::ggl::{Equations, StepState};
-use flexbody::model::Form;
-use flexbody::system::{Numbering, placement};
+use flexbody_mechanics::integrate::implicit::ggl::{Equations, StepState};
+use flexbody_mechanics::model::Form;
+use flexbody_mechanics::system::{Numbering, placement};
 use reference::models::{Numbers, alone};
 use reference::shells::aluminium_plate;
 

@@ -2,15 +2,15 @@
 //! its rows, between two bodies and between a body and ground, with skew frames in random planes.
 //! Components in the plane agree to 1e-14 of the largest number.
 
-use crate::tests::reference;
+use crate::reference;
 
-use flexbody::math::{Complex64, Parameters, Scalar, rotation};
-use flexbody::model::{Mobility, Model};
-use flexbody::system::InMotion;
-use flexbody::system::constraint::RowGradient;
-use flexbody::system::joints::{self, JointCotangent, RowCotangents};
-use flexbody::system::planar::PlanarJoints;
-use flexbody::system::{BodyMotion, Numbering, reduce};
+use flexbody_mathematics::math::{Complex64, Parameters, Scalar, rotation};
+use flexbody_mechanics::model::{Mobility, Model};
+use flexbody_mechanics::system::InMotion;
+use flexbody_mechanics::system::constraint::RowGradient;
+use flexbody_mechanics::system::joints::{self, JointCotangent, RowCotangents};
+use flexbody_mechanics::system::planar::PlanarJoints;
+use flexbody_mechanics::system::{BodyMotion, Numbering, reduce};
 use reference::cases::{Case, case, lift, parameters, step};
 use reference::models::{KINDS, axes_along};
 

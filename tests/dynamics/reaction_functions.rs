@@ -2,22 +2,22 @@
 //! bodies, and exact gradients by every method.
 
 use super::gradients_match_complex_step::{compare, explicit, implicit};
-use crate::tests::reference;
+use crate::reference;
 
-use flexbody::functions::evaluate::sample;
-use flexbody::functions::instant::DeformationKind;
-use flexbody::functions::stations::Largest;
-use flexbody::functions::{Bound, Function, Instant, Reduction, Scene};
-use flexbody::integrate::{Method, Multipliers, Settings, Trajectory, simulate};
-use flexbody::math::{Mat3, Vec3, rotation};
-use flexbody::model::{
+use flexbody_mathematics::math::{Mat3, Vec3, rotation};
+use flexbody_mechanics::functions::evaluate::sample;
+use flexbody_mechanics::functions::instant::DeformationKind;
+use flexbody_mechanics::functions::stations::Largest;
+use flexbody_mechanics::functions::{Bound, Function, Instant, Reduction, Scene};
+use flexbody_mechanics::integrate::{Method, Multipliers, Settings, Trajectory, simulate};
+use flexbody_mechanics::model::{
     Axes, DegreeOfFreedom, Drive, JointKind, Load, LoadKind, Model, TimeFunction,
 };
-use flexbody::system::Numbering;
-use flexbody::system::angular_momentum::AngularMomentum;
-use flexbody::system::loads::springs::{Spring, SpringPart};
-use flexbody::system::measures::{End, Wrench, WrenchPart};
-use flexbody::system::observe::{observe, reactions};
+use flexbody_mechanics::system::Numbering;
+use flexbody_mechanics::system::angular_momentum::AngularMomentum;
+use flexbody_mechanics::system::loads::springs::{Spring, SpringPart};
+use flexbody_mechanics::system::measures::{End, Wrench, WrenchPart};
+use flexbody_mechanics::system::observe::{observe, reactions};
 use reference::flexible::{quadratic, swing, swing_of};
 use reference::models::{KINDS, Numbers, free_pair};
 

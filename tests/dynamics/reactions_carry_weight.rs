@@ -1,13 +1,13 @@
 //! Reactions of bodies at rest agree with statics to 5e-11 N or N m (1e-12 of 50 N).
 
-use crate::tests::reference;
+use crate::reference;
 
-use flexbody::integrate::{Method, Multipliers, Settings, Start, simulate};
-use flexbody::math::Vec3;
-use flexbody::model::{JointKind, Model, RigidBody};
-use flexbody::system::kkt::SaddlePoint;
-use flexbody::system::observe::{Reaction, reactions};
-use flexbody::system::{Numbering, initial};
+use flexbody_mathematics::math::Vec3;
+use flexbody_mechanics::integrate::{Method, Multipliers, Settings, Start, simulate};
+use flexbody_mechanics::model::{JointKind, Model, RigidBody};
+use flexbody_mechanics::system::kkt::SaddlePoint;
+use flexbody_mechanics::system::observe::{Reaction, reactions};
+use flexbody_mechanics::system::{Numbering, initial};
 use reference::models::{joint, rod};
 
 fn gravity() -> Vec3<f64> {

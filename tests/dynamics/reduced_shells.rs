@@ -1,14 +1,16 @@
 //! Shells in a reduced basis: the projection against the shells themselves.
 
-use crate::tests::reference;
+use crate::reference;
 
-use flexbody::math::{Mat3, Vec3};
-use flexbody::model::finite::FiniteElements;
-use flexbody::model::flexible::Modal;
-use flexbody::model::{Form, Model};
-use flexbody::system::bodies::{BodyMotion, all_force_balances};
-use flexbody::system::reduction::{ModeChoice, ReducedBasis, Request, project, reduced_basis};
-use flexbody::system::{Numbering, flexible, placement};
+use flexbody_mathematics::math::{Mat3, Vec3};
+use flexbody_mechanics::model::finite::FiniteElements;
+use flexbody_mechanics::model::flexible::Modal;
+use flexbody_mechanics::model::{Form, Model};
+use flexbody_mechanics::system::bodies::{BodyMotion, all_force_balances};
+use flexbody_mechanics::system::reduction::{
+    ModeChoice, ReducedBasis, Request, project, reduced_basis,
+};
+use flexbody_mechanics::system::{Numbering, flexible, placement};
 use nalgebra::{DMatrix, DVector};
 use reference::flexible::totals;
 use reference::models::Numbers;
@@ -69,7 +71,7 @@ fn a_basis_takes_the_mechanics_of_its_shells() {
         let shells = shells(&mut numbers, elements, clamped);
         let mut projected = projected(&mut numbers, &shells, vectors);
         // All of these bend.
-        projected = flexbody::system::reduction::project(
+        projected = flexbody_mechanics::system::reduction::project(
             &shells.elements.mesh,
             &(0..shells.elements.mesh.elements.len()).collect::<Vec<_>>(),
             projected.basis.vectors.clone(),

@@ -1,13 +1,13 @@
 //! Redundant joints: redundant rows are left out and named, and the motion is that without them.
 //! Singular positions and joints that do not fit are distinguished from redundancy.
 
-use crate::tests::reference;
-use crate::tests::reference::documents::{benchmark, final_positions, problem};
+use crate::reference;
+use crate::reference::documents::{benchmark, final_positions, problem};
 
-use flexbody::driver::{check, simulate};
-use flexbody::integrate::IntegrationFailure;
-use flexbody::problem::{Override, Problem};
-use flexbody::system::observe::Reaction;
+use flexbody_driver::{check, simulate};
+use flexbody_mechanics::integrate::IntegrationFailure;
+use flexbody_mechanics::system::observe::Reaction;
+use flexbody_problem::{Override, Problem};
 use reference::models::Numbers;
 use serde_json::Value;
 use std::path::Path;

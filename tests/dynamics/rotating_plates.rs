@@ -1,14 +1,14 @@
 //! A cantilever plate that turns: von Karman's strains stiffen it against centrifugal forces.
 
-use flexbody::linalg::Emit;
-use flexbody::linalg::cholesky::SymmetricPattern;
-use flexbody::math::{Mat3, Vec3};
-use flexbody::model::Form;
-use flexbody::model::finite::FiniteElements;
-use flexbody::problem::Problem;
-use flexbody::structures::modes::Pencil;
-use flexbody::system::finite;
-use flexbody::system::flexing::Flexing;
+use flexbody_mathematics::linalg::Emit;
+use flexbody_mathematics::linalg::cholesky::SymmetricPattern;
+use flexbody_mathematics::math::{Mat3, Vec3};
+use flexbody_mechanics::model::Form;
+use flexbody_mechanics::model::finite::FiniteElements;
+use flexbody_mechanics::structures::modes::Pencil;
+use flexbody_mechanics::system::finite;
+use flexbody_mechanics::system::flexing::Flexing;
+use flexbody_problem::Problem;
 use std::collections::BTreeMap;
 
 /// A plate of 1 × 0.25 m and 1 mm, clamped at a short edge in axes that turn about this edge.

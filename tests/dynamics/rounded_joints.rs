@@ -2,10 +2,10 @@
 //! the tolerance of the input, are left out, and are said with their misfit. The motion is that of the exact
 //! numbers up to the rounding.
 
-use crate::tests::reference::documents::{benchmark, problem};
+use crate::reference::documents::{benchmark, problem};
 
-use flexbody::driver::{check, simulate};
-use flexbody::problem::Problem;
+use flexbody_driver::{check, simulate};
+use flexbody_problem::Problem;
 use serde_json::Value;
 
 fn rounded(x: f64, unit: f64) -> f64 {

@@ -1,10 +1,10 @@
 //! Parallel simulations, elements and fronts do not change the results of a run.
 
-use crate::tests::files::finite_elements::plates;
-use crate::tests::reference::documents::problem as parsed;
+use crate::reference::documents::plates;
+use crate::reference::documents::problem as parsed;
 use flexbody::Analysis;
-use flexbody::driver::{KnownEvaluations, optimise, second_order};
-use flexbody::problem::Problem;
+use flexbody_driver::{KnownEvaluations, optimise, second_order};
+use flexbody_problem::Problem;
 use serde_json::Value;
 use std::ops::ControlFlow;
 use std::path::Path;

@@ -1,10 +1,10 @@
 //! Linkages that pass positions with their bars in line. A parallelogram in gravity moves as a
 //! pendulum with the same moments, for any lengths, start and tolerance.
 
-use crate::tests::reference;
+use crate::reference;
 
-use flexbody::driver::simulate;
-use flexbody::problem::Problem;
+use flexbody_driver::simulate;
+use flexbody_problem::Problem;
 use reference::models::Numbers;
 use serde_json::Value;
 

@@ -1,14 +1,14 @@
 //! The method chosen for a scene, the steps that are kept from design to design, and the messages
 //! about both.
 
-use flexbody::driver::evaluate::Evaluated;
-use flexbody::driver::evaluator::Evaluator;
-use flexbody::driver::integration::Integration;
-use flexbody::driver::{KnownEvaluations, simulate};
-use flexbody::integrate::{IntegrationFailure, Method, Spacing};
-use flexbody::optimiser::Nlp;
-use flexbody::problem::{Override, Problem};
-use flexbody::report::evaluations::{EvaluationRecord, Found};
+use flexbody_driver::evaluate::Evaluated;
+use flexbody_driver::evaluator::Evaluator;
+use flexbody_driver::integration::Integration;
+use flexbody_driver::{KnownEvaluations, simulate};
+use flexbody_mechanics::integrate::{IntegrationFailure, Method, Spacing};
+use flexbody_optimiser::Nlp;
+use flexbody_problem::{Override, Problem};
+use flexbody_report::evaluations::{EvaluationRecord, Found};
 use std::path::Path;
 
 fn load(name: &str, changes: &[&str]) -> Problem {
@@ -324,13 +324,14 @@ fn damped_spring(stiffness: f64, ratio: f64, tolerance: f64, method: Option<&str
 /// Work of a run in evaluations of the accelerations; infinite if it fails.
 fn work(problem: &Problem) -> (f64, Option<Method>) {
     let scene = problem.scene::<f64>(&problem.start());
-    let settings = flexbody::integrate::Settings {
+    let settings = flexbody_mechanics::integrate::Settings {
         spacing: problem.simulation.spacing.clone(),
-        samples: flexbody::integrate::Samples::Uniform(1),
-        ..flexbody::integrate::Settings::steps(Method::Dop853, 1)
+        samples: flexbody_mechanics::integrate::Samples::Uniform(1),
+        ..flexbody_mechanics::integrate::Settings::steps(Method::Dop853, 1)
     };
     let method = problem.simulation.method;
-    let found = flexbody::integrate::simulate_by(&scene.model, scene.duration, method, &settings);
+    let found =
+        flexbody_mechanics::integrate::simulate_by(&scene.model, scene.duration, method, &settings);
     let Ok(found) = found else {
         return (f64::INFINITY, None);
     };

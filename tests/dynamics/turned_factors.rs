@@ -1,13 +1,13 @@
 //! Kept factors of scenes with shells turn with the bodies.
 
-use crate::tests::reference;
+use crate::reference;
 
-use flexbody::integrate::implicit::ggl::{Equations, StepState};
-use flexbody::integrate::implicit::turned::Turned;
-use flexbody::linalg::SparseMatrix;
-use flexbody::math::{Mat3, Vec3, rotation};
-use flexbody::model::Model;
-use flexbody::system::{Numbering, RedundantRows, placement};
+use flexbody_mathematics::linalg::SparseMatrix;
+use flexbody_mathematics::math::{Mat3, Vec3, rotation};
+use flexbody_mechanics::integrate::implicit::ggl::{Equations, StepState};
+use flexbody_mechanics::integrate::implicit::turned::Turned;
+use flexbody_mechanics::model::Model;
+use flexbody_mechanics::system::{Numbering, RedundantRows, placement};
 use reference::models::Numbers;
 use reference::shells::shell_swing;
 

@@ -1,8 +1,8 @@
 //! The backward march skips parts of a motion that affect no function: instants with negligible
 //! weight, and the steps after the last instant with weight.
 
-use flexbody::driver::Evaluated;
-use flexbody::problem::Problem;
+use flexbody_driver::Evaluated;
+use flexbody_problem::Problem;
 use serde_json::Value;
 use std::path::Path;
 

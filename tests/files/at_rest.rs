@@ -1,13 +1,13 @@
 //! Derivatives of motions at rest, against the small motions about the rest in closed form; and
 //! gradients that the steps do not resolve, which are refused by name.
 
-use crate::tests::reference::documents::optimised;
-use flexbody::driver::check;
-use flexbody::driver::evaluate::Evaluated;
-use flexbody::driver::resolved;
-use flexbody::integrate::{Settings, Spacing, simulate};
-use flexbody::optimiser::Status;
-use flexbody::problem::Problem;
+use crate::reference::documents::optimised;
+use flexbody_driver::check;
+use flexbody_driver::evaluate::Evaluated;
+use flexbody_driver::resolved;
+use flexbody_mechanics::integrate::{Settings, Spacing, simulate};
+use flexbody_optimiser::Status;
+use flexbody_problem::Problem;
 use std::path::Path;
 
 fn parse(text: &str) -> Problem {
@@ -334,7 +334,7 @@ fn a_moving_scene_keeps_its_steps() {
             let settings = Settings {
                 spacing: Spacing::Tolerance(1e-9),
                 derivatives,
-                ..Settings::steps(flexbody::integrate::Method::Dop853, 1)
+                ..Settings::steps(flexbody_mechanics::integrate::Method::Dop853, 1)
             };
             simulate(&scene.model, scene.duration, &settings).expect("runs")
         };

@@ -1,7 +1,7 @@
 //! The axes of a beam are a choice of its author: what holds them does not change how it moves.
 
-use crate::tests::reference::documents::{problem, run};
-use flexbody::driver::check::check;
+use crate::reference::documents::{problem, run};
+use flexbody_driver::check::check;
 use serde_json::Value;
 
 /// A bar of 1 m on a hinge or a weld that falls by its weight, in these axes. Its functions are the integral of its

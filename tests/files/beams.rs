@@ -2,10 +2,10 @@
 //! with an elastic rod (Simeon 1996; crank.f of the IVP test set); beams that are nearly rigid; derivatives in
 //! every parameter; what files may not say.
 
-use crate::tests::reference::documents::{problem as parsed, run, value};
-use crate::tests::reference::gradients::gradients_are_exact;
-use flexbody::driver::simulate;
-use flexbody::problem::Problem;
+use crate::reference::documents::{problem as parsed, run, value};
+use crate::reference::gradients::gradients_are_exact;
+use flexbody_driver::simulate;
+use flexbody_problem::Problem;
 use serde_json::Value;
 use std::path::Path;
 

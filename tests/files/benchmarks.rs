@@ -3,12 +3,12 @@
 //! from elliptic functions; the governor from an independent integration of its three coordinates
 //! to 1e-11 (Radau).
 
-use crate::tests::reference::documents::{benchmark, bodies, final_positions, optimised, problem};
-use flexbody::driver::stability::in_units;
-use flexbody::driver::start::notes;
-use flexbody::driver::{Simulation, simulate};
-use flexbody::math::{Mat3, Vec3, rotation};
-use flexbody::problem::{Override, Problem};
+use crate::reference::documents::{benchmark, bodies, final_positions, optimised, problem};
+use flexbody_driver::stability::in_units;
+use flexbody_driver::start::notes;
+use flexbody_driver::{Simulation, simulate};
+use flexbody_mathematics::math::{Mat3, Vec3, rotation};
+use flexbody_problem::{Override, Problem};
 use serde_json::Value;
 use std::path::Path;
 

@@ -1,9 +1,9 @@
 //! Starts in equilibrium from which a disturbance grows: columns and plates that turn, above the load at which they
 //! buckle.
 
-use crate::tests::reference::documents::{problem as parsed, run};
-use crate::tests::reference::gradients::gradients_are_exact;
-use flexbody::driver::start;
+use crate::reference::documents::{problem as parsed, run};
+use crate::reference::gradients::gradients_are_exact;
+use flexbody_driver::start;
 use serde_json::Value;
 
 /// β = ρ A Ω² L⁴ / EI at which a plate that points from a ring of radius L to its axis buckles.

@@ -1,14 +1,14 @@
 //! Pressures and dead loads on bodies of elements, from files: against statics, in other axes and units, gradients, and
 //! what files may not say.
 
-use super::finite_elements::plates;
-use crate::tests::reference::documents::{problem as parsed, values};
-use crate::tests::reference::gradients::{scaled_gradients_are_exact, thick_and_soft};
-use crate::tests::reference::models::Numbers;
-use flexbody::library::Analysis;
-use flexbody::math::rotation::matrix;
-use flexbody::math::{Mat3, Vec3};
-use flexbody::problem::Problem;
+use crate::reference::documents::plates;
+use crate::reference::documents::{problem as parsed, values};
+use crate::reference::gradients::{scaled_gradients_are_exact, thick_and_soft};
+use crate::reference::models::Numbers;
+use flexbody::Analysis;
+use flexbody_mathematics::math::rotation::matrix;
+use flexbody_mathematics::math::{Mat3, Vec3};
+use flexbody_problem::Problem;
 use serde_json::Value;
 
 const LOADS: [&str; 3] = ["pressure", "edge", "area"];

@@ -1,10 +1,10 @@
 //! Beams, lumped masses and damping of bodies of elements, from files.
 
-use super::finite_elements::plates;
-use crate::tests::reference::documents::problem as parsed;
-use crate::tests::reference::gradients::{scaled_gradients_are_exact, thick_and_soft};
-use flexbody::driver::simulate;
-use flexbody::problem::Problem;
+use crate::reference::documents::plates;
+use crate::reference::documents::problem as parsed;
+use crate::reference::gradients::{scaled_gradients_are_exact, thick_and_soft};
+use flexbody_driver::simulate;
+use flexbody_problem::Problem;
 use serde_json::Value;
 
 /// Two soft plates, the first with two stiffeners and masses, both damped.

@@ -1,11 +1,11 @@
 //! Section forces and fibre stresses of beams among the elements of a body: against the reaction at their end, against
 //! beams by functions, gradients, and what files may not say.
 
-use super::finite_elements::plates;
-use crate::tests::reference::documents::problem as parsed;
-use crate::tests::reference::gradients::{scaled_gradients_are_exact, thick_and_soft};
-use flexbody::driver::simulate;
-use flexbody::problem::Problem;
+use crate::reference::documents::plates;
+use crate::reference::documents::problem as parsed;
+use crate::reference::gradients::{scaled_gradients_are_exact, thick_and_soft};
+use flexbody_driver::simulate;
+use flexbody_problem::Problem;
 use serde_json::Value;
 use std::collections::BTreeMap;
 

@@ -1,11 +1,11 @@
 //! Starts of joints between bodies of finite elements, and torques at their points.
 
-use super::finite_elements::plates;
-use crate::tests::reference::documents::{problem as parsed, values};
-use crate::tests::reference::gradients::{scaled_gradients_are_exact, thick_and_soft};
-use flexbody::system::flexible::strain_energy;
-use flexbody::system::nearest::nearest;
-use flexbody::system::{BodyMotion, Numbering};
+use crate::reference::documents::plates;
+use crate::reference::documents::{problem as parsed, values};
+use crate::reference::gradients::{scaled_gradients_are_exact, thick_and_soft};
+use flexbody_mechanics::system::flexible::strain_energy;
+use flexbody_mechanics::system::nearest::nearest;
+use flexbody_mechanics::system::{BodyMotion, Numbering};
 use serde_json::Value;
 use std::f64::consts::FRAC_PI_2;
 

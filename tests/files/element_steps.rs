@@ -1,8 +1,8 @@
 //! Steps by tolerance of bodies of elements: the error follows the tolerance, and the mesh does not set the steps.
 
-use super::finite_elements::plates;
-use crate::tests::reference::documents::problem as parsed;
-use flexbody::driver::simulate;
+use crate::reference::documents::plates;
+use crate::reference::documents::problem as parsed;
+use flexbody_driver::simulate;
 
 /// Place of the tip \[m\] and number of steps of the double plate of 5 mm by Radau IIA with a tolerance.
 fn tip(elements: [usize; 2], tolerance: f64) -> ([f64; 2], usize) {

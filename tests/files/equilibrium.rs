@@ -1,18 +1,18 @@
 //! Starts in static equilibrium: cantilevers against closed forms, mechanisms whose elastic coordinates do not
 //! accelerate, derivatives, and faults.
 
-use super::finite_elements::plates;
 use super::modal::modal;
-use crate::tests::reference::documents::{problem as parsed, read, run};
-use crate::tests::reference::gradients::{
+use crate::reference::documents::plates;
+use crate::reference::documents::{problem as parsed, read, run};
+use crate::reference::gradients::{
     gradients_are_exact, scaled_gradients_are_exact, thick_and_soft,
 };
-use flexbody::driver::check;
-use flexbody::math::{Dual, Scalar};
-use flexbody::problem::Problem;
-use flexbody::system::Numbering;
-use flexbody::system::initial;
-use flexbody::system::kkt::SaddlePoint;
+use flexbody_driver::check;
+use flexbody_mathematics::math::{Dual, Scalar};
+use flexbody_mechanics::system::Numbering;
+use flexbody_mechanics::system::initial;
+use flexbody_mechanics::system::kkt::SaddlePoint;
+use flexbody_problem::Problem;
 use serde_json::Value;
 
 const LENGTH: f64 = 1.5;

@@ -1,26 +1,15 @@
 //! Shells that move, from files: two hinged plates against an independent code of geometrically exact shells;
 //! derivatives of all functions by the complex step; what files may not say.
 
-use crate::tests::reference::documents::{problem as parsed, read, run};
-use crate::tests::reference::gradients::{scaled_gradients_are_exact, thick_and_soft};
-use flexbody::driver::simulate;
-use flexbody::driver::start::notes;
-use flexbody::problem::Problem;
-use flexbody::system::flexible::strain_energy;
-use flexbody::system::nearest::nearest;
-use flexbody::system::{BodyMotion, Numbering};
+use crate::reference::documents::{plates, problem as parsed, read, run};
+use crate::reference::gradients::{scaled_gradients_are_exact, thick_and_soft};
+use flexbody_driver::simulate;
+use flexbody_driver::start::notes;
+use flexbody_mechanics::system::flexible::strain_energy;
+use flexbody_mechanics::system::nearest::nearest;
+use flexbody_mechanics::system::{BodyMotion, Numbering};
+use flexbody_problem::Problem;
 use serde_json::Value;
-
-/// The double plate with this mesh, duration, number of steps and method.
-pub fn plates(elements: [usize; 2], duration: f64, steps: usize, method: &Value) -> Value {
-    let mut document = read("problems/flexible/double_plate.json");
-    for body in ["first", "second"] {
-        document["bodies"][body]["elements"]["structure"]["mesh"]["plate"]["elements"] =
-            json!(elements);
-    }
-    document["simulation"] = json!({"duration": duration, "steps": steps, "method": method});
-    document
-}
 
 /// Positions after 0.1 s. The plates hardly bend, so a coarse mesh suffices.
 #[test]

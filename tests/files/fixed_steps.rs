@@ -1,8 +1,8 @@
 //! Steps of one size in flexible scenes: estimated errors against many steps, and Newton's method at round-off.
 
 use super::modal::data;
-use crate::tests::reference::documents::{problem, read, run};
-use flexbody::driver::error::estimate;
+use crate::reference::documents::{problem, read, run};
+use flexbody_driver::error::estimate;
 use serde_json::Value;
 
 /// A beam that falls about a hinge.

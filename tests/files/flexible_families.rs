@@ -2,8 +2,8 @@
 //! reductions, and by other methods gives the same functions.
 
 use super::modal::data;
-use flexbody::driver::simulate;
-use flexbody::problem::Problem;
+use flexbody_driver::simulate;
+use flexbody_problem::Problem;
 use serde_json::{Map, Value};
 
 /// Numbers between 0 and 1 by a linear congruence.

@@ -1,10 +1,10 @@
 //! Scenes of flexible bodies with published results: a four-bar mechanism with a misaligned joint, and the spin-up
 //! of a strip of shells.
 
-use crate::tests::reference::documents::{self, problem as parsed};
-use flexbody::driver::{Simulation, check, simulate};
-use flexbody::integrate::Method;
-use flexbody::problem::Problem;
+use crate::reference::documents::{self, problem as parsed};
+use flexbody_driver::{Simulation, check, simulate};
+use flexbody_mechanics::integrate::Method;
+use flexbody_problem::Problem;
 use serde_json::Value;
 use std::path::Path;
 

@@ -1,7 +1,7 @@
 //! What holds an edge: all of its nodes, or their average, whatever the axes of the body; in motion as at rest.
 
 use super::statics::solved_at;
-use crate::tests::reference::documents::{problem as parsed, run};
+use crate::reference::documents::{problem as parsed, run};
 use serde_json::Value;
 
 const E: f64 = 7e10;

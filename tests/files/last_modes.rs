@@ -1,8 +1,8 @@
 //! The highest modes of small structures, and errors where frequencies are double.
 
-use crate::tests::reference::documents::problem;
-use flexbody::driver::check;
-use flexbody::driver::statics::{StaticDesign, error};
+use crate::reference::documents::problem;
+use flexbody_driver::check;
+use flexbody_driver::statics::{StaticDesign, error};
 use serde_json::Value;
 
 /// A beam of one element of 2 m, and its frequency of this mode.

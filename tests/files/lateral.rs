@@ -2,9 +2,9 @@
 //! at rest, their gradients, when they are told to be unstable, and beams that cannot buckle.
 
 use super::statics::solved_at;
-use crate::tests::reference::documents::{problem as parsed, run, value};
-use crate::tests::reference::gradients::gradients_are_exact;
-use flexbody::driver::{Evaluated, bases, start};
+use crate::reference::documents::{problem as parsed, run, value};
+use crate::reference::gradients::gradients_are_exact;
+use flexbody_driver::{Evaluated, bases, start};
 use serde_json::Value;
 
 const LENGTH: f64 = 1.0;

@@ -1,11 +1,15 @@
 //! The folders of `src` form layers: a file imports only from folders above its own in the table of
-//! `src/lib.rs`. The optimiser, which contains no mechanics, imports only from its own folder.
+//! `src/lib.rs`. Cargo keeps this order between crates; these tests keep it inside a crate of several
+//! folders. The optimiser, which contains no mechanics, depends on no other crate of the workspace.
 
 use std::collections::BTreeSet;
 use std::path::{Path, PathBuf};
 
-/// Folders that import from no other folder.
-const INDEPENDENT: [&str; 1] = ["optimiser"];
+/// Crates whose folders are layers of their own; the folders `cli` and `library` belong to the root.
+const OF_SEVERAL_FOLDERS: [&str; 2] = ["mathematics", "mechanics"];
+
+/// Macros at the root of a crate.
+const MACROS: [&str; 1] = ["parameters"];
 
 /// An import of a folder of the crate.
 #[derive(Debug, PartialEq)]
@@ -23,14 +27,30 @@ pub(super) fn read(path: &Path) -> String {
     std::fs::read_to_string(path).expect("a source file")
 }
 
-/// The folders of the table in `src/lib.rs`, from the top.
-fn table() -> Vec<String> {
+/// The folders of the table in `src/lib.rs`, from the top: paths below `src`.
+pub(super) fn table() -> Vec<String> {
     let text = read(&source().join("lib.rs"));
     let row = |line: &str| {
         let cell = line.strip_prefix("//! | `")?;
         Some(cell.split_once("` |")?.0.to_owned())
     };
     text.lines().filter_map(row).collect()
+}
+
+/// The name that the imports use for a folder of the table.
+pub(super) fn layer(folder: &str) -> &str {
+    folder.rsplit('/').next().unwrap_or(folder)
+}
+
+/// The folder of the crate's root file of a folder of the table.
+fn root(folder: &str) -> PathBuf {
+    let first = folder.split('/').next().unwrap_or(folder);
+    let own = source().join(first);
+    if own.join("Cargo.toml").is_file() {
+        own
+    } else {
+        source()
+    }
 }
 
 /// The Rust files of a folder and its subfolders, in order.
@@ -122,69 +142,90 @@ fn imports(text: &str, depth: usize) -> Vec<Import> {
     found
 }
 
-/// Depth of a file's module below the crate's root.
-fn depth(file: &Path) -> usize {
-    let parts = file
-        .strip_prefix(source())
-        .expect("below src")
-        .components()
-        .count();
-    parts - usize::from(file.ends_with("mod.rs"))
+/// Depth of a file's module below the root of its crate.
+fn depth(file: &Path, root: &Path) -> usize {
+    let parts = file.strip_prefix(root).expect("below the crate");
+    let shared = file.ends_with("mod.rs") || file.ends_with("lib.rs");
+    parts.components().count() - usize::from(shared)
 }
 
-/// Faults of the imports of a file of `folder`, as `file:line: …`.
+/// Faults of the imports of a file of `folder`, as `file:line: …`. What no layer is called is a module
+/// of the crate itself.
 fn offences(table: &[String], folder: &str, file: &str, imports: &[Import]) -> Vec<String> {
-    let rank = |name: &str| table.iter().position(|known| known == name);
-    let own = rank(folder);
-    let wrong = |import: &&Import| {
-        let other = rank(&import.folder);
-        let independent = INDEPENDENT.contains(&folder);
-        // What tests share is there for the tests inside files alone: nothing else compiles with it.
-        let by_tests = import.folder == "tests";
-        let outside = import.folder != folder && !by_tests;
-        outside && (other.is_none() || other > own || independent)
+    let rank = |name: &str| table.iter().position(|known| layer(known) == name);
+    let own = rank(layer(folder));
+    let alone = root(folder) == source().join(folder);
+    let is_own = |name: &str| alone && root(folder).join(format!("{name}.rs")).is_file();
+    let wrong = |import: &&Import| match rank(&import.folder) {
+        Some(other) => Some(other) > own && !is_own(&import.folder),
+        None => !alone && !MACROS.contains(&&*import.folder),
     };
     let tell = |import: &Import| {
         format!(
-            "{file}:{}: {folder} imports {}, which does not stand above it",
-            import.line, import.folder
+            "{file}:{}: {} imports {}, which does not stand above it",
+            import.line,
+            layer(folder),
+            import.folder
         )
     };
     imports.iter().filter(wrong).map(tell).collect()
 }
 
-#[test]
-fn the_table_lists_the_folders_on_disk_and_the_modules_of_the_crate() {
-    let table = table();
-    let listed: BTreeSet<&str> = table.iter().map(String::as_str).collect();
-    assert_eq!(listed.len(), table.len(), "a folder is listed twice");
-    let folders: BTreeSet<String> = std::fs::read_dir(source())
-        .expect("src")
-        .map(|entry| entry.expect("an entry").path())
-        .filter(|path| path.is_dir())
-        .map(|path| path.file_name().expect("a name").to_string_lossy().into())
-        .collect();
-    assert_eq!(listed, folders.iter().map(String::as_str).collect());
-    let text = read(&source().join("lib.rs"));
-    let modules: BTreeSet<&str> = text
+/// The folders in a folder.
+fn folders(of: &Path) -> BTreeSet<String> {
+    let entries = std::fs::read_dir(of).expect("a folder");
+    let paths = entries.map(|entry| entry.expect("an entry").path());
+    let name = |path: PathBuf| path.file_name().expect("a name").to_string_lossy().into();
+    paths.filter(|path| path.is_dir()).map(name).collect()
+}
+
+/// The modules that a root file declares.
+fn modules(file: &Path) -> BTreeSet<String> {
+    let text = read(file);
+    let lines = text
         .lines()
-        .map(|line| line.strip_prefix("pub ").unwrap_or(line))
-        .filter_map(|line| line.strip_prefix("mod ")?.strip_suffix(';'))
-        .filter(|module| *module != "tests")
-        .collect();
-    assert_eq!(listed, modules);
+        .map(|line| line.strip_prefix("pub ").unwrap_or(line));
+    let name = |line: &str| Some(line.strip_prefix("mod ")?.strip_suffix(';')?.to_owned());
+    lines.filter_map(name).collect()
+}
+
+#[test]
+fn the_table_lists_the_folders_on_disk_and_the_modules_of_the_crates() {
+    let table = table();
+    let listed: BTreeSet<String> = table.iter().cloned().collect();
+    assert_eq!(listed.len(), table.len(), "a folder is listed twice");
+    let mut on_disk = BTreeSet::new();
+    for folder in folders(&source()) {
+        if !OF_SEVERAL_FOLDERS.contains(&&*folder) {
+            on_disk.insert(folder);
+            continue;
+        }
+        let inner = folders(&source().join(&folder));
+        assert_eq!(modules(&source().join(&folder).join("lib.rs")), inner);
+        on_disk.extend(inner.iter().map(|inner| format!("{folder}/{inner}")));
+    }
+    assert_eq!(listed, on_disk);
+    let of_root = |folder: &&String| root(folder) == source();
+    let in_root: BTreeSet<String> = table.iter().filter(of_root).cloned().collect();
+    assert_eq!(modules(&source().join("lib.rs")), in_root);
     assert_eq!(table.last().map(String::as_str), Some("cli"));
-    let loose: Vec<PathBuf> = std::fs::read_dir(source())
-        .expect("src")
+    let entries = std::fs::read_dir(source()).expect("src");
+    let mut loose = entries
         .map(|entry| entry.expect("an entry").path())
-        .filter(|path| path.is_file())
-        .filter(|path| {
-            !["lib.rs", "main.rs", "tests.rs"]
-                .iter()
-                .any(|own| path.ends_with(own))
-        })
-        .collect();
-    assert!(loose.is_empty(), "files outside the folders: {loose:?}");
+        .filter(|path| path.is_file());
+    let known = |path: PathBuf| path.ends_with("lib.rs") || path.ends_with("main.rs");
+    assert!(loose.all(known), "files outside the folders");
+}
+
+/// Mathematics and the optimiser are of use without the rest.
+#[test]
+fn the_optimiser_depends_on_no_other_crate_of_the_workspace() {
+    for name in ["mathematics", "optimiser"] {
+        let manifest = read(&source().join(name).join("Cargo.toml"));
+        let (_, dependencies) = manifest.split_once("[dependencies]").expect("a list");
+        assert!(dependencies.contains("nalgebra"), "{name}");
+        assert!(!dependencies.contains("flexbody"), "{name}");
+    }
 }
 
 #[test]
@@ -193,7 +234,7 @@ fn every_folder_imports_from_above_only() {
     let (mut wrong, mut seen) = (Vec::new(), 0);
     for folder in &table {
         for file in files(&source().join(folder)) {
-            let imports = imports(&read(&file), depth(&file));
+            let imports = imports(&read(&file), depth(&file, &root(folder)));
             seen += imports.len();
             let name = file.strip_prefix(env!("CARGO_MANIFEST_DIR"));
             let name = name.expect("below the package").display().to_string();
@@ -227,24 +268,20 @@ fn an_import_from_below_is_told_with_file_and_line() {
             import(8, "cli"),
         ]
     );
-    let wrong = offences(&table(), "system", "src/system/joints.rs", &found);
+    let file = "src/mechanics/system/joints.rs";
+    let wrong = offences(&table(), "mechanics/system", file, &found);
+    let told = |line: usize, name: &str| {
+        format!("{file}:{line}: system imports {name}, which does not stand above it")
+    };
     assert_eq!(
         wrong,
-        [
-            "src/system/joints.rs:4: system imports driver, which does not stand above it",
-            "src/system/joints.rs:7: system imports report, which does not stand above it",
-            "src/system/joints.rs:8: system imports cli, which does not stand above it",
-        ]
+        [told(4, "driver"), told(7, "report"), told(8, "cli")]
     );
-    let independent = [import(1, "math"), import(2, "optimiser")];
-    let wrong = offences(
-        &table(),
-        "optimiser",
-        "src/optimiser/solve.rs",
-        &independent,
-    );
+    // A module of a crate of one folder is its own.
+    let own = [import(1, "pages"), import(2, "cli")];
+    let wrong = offences(&table(), "report", "src/report/lib.rs", &own);
     assert_eq!(
         wrong,
-        ["src/optimiser/solve.rs:1: optimiser imports math, which does not stand above it"]
+        ["src/report/lib.rs:2: report imports cli, which does not stand above it"]
     );
 }

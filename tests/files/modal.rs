@@ -1,9 +1,9 @@
 //! Bodies from files of other codes: the beam of tests/data/modal (20 cubic elements, written by another program)
 //! against the beam of the problem format, similar bodies, free motions, derivatives, and faults of files.
 
-use crate::tests::reference::documents::{problem as parsed, values};
-use crate::tests::reference::gradients::gradients_are_exact;
-use flexbody::problem::Problem;
+use crate::reference::documents::{problem as parsed, values};
+use crate::reference::gradients::gradients_are_exact;
+use flexbody_problem::Problem;
 use serde_json::Value;
 use std::path::Path;
 

@@ -1,7 +1,7 @@
 //! Faults of bodies from files, with their places.
 
 use super::modal::{beam, data, modal, pendulum};
-use flexbody::problem::Problem;
+use flexbody_problem::Problem;
 use serde_json::Value;
 use std::path::PathBuf;
 

@@ -1,8 +1,8 @@
 //! Bodies from files in scenes: starts of joints, torques, fast rotation, and files of few digits.
 
 use super::modal::{YOUNG, beam, data, modal, pendulum};
-use crate::tests::reference::documents::{problem as parsed, run, value, values};
-use flexbody::problem::Problem;
+use crate::reference::documents::{problem as parsed, run, value, values};
+use flexbody_problem::Problem;
 use serde_json::Value;
 
 /// The pendulum of the files with a tenth of the stiffness, so that it bends visibly.

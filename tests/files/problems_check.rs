@@ -7,8 +7,8 @@
 //! These agree relative to themselves only to the stated tolerance, and relative to the gradient as
 //! well as others. Coarse steps, the hardest for Newton's method, are checked, too.
 
-use flexbody::driver::{CheckedDerivative, chaos, check};
-use flexbody::problem::Problem;
+use flexbody_driver::{CheckedDerivative, chaos, check};
+use flexbody_problem::Problem;
 use std::path::Path;
 
 /// Largest difference of a derivative, relative to itself and to its function's gradient.

@@ -1,7 +1,7 @@
 //! The example of README.md runs and has the stated result. Paths in the documents exist.
 
-use crate::tests::reference::documents::optimised;
-use flexbody::problem::Problem;
+use crate::reference::documents::optimised;
+use flexbody_problem::Problem;
 use std::path::{Path, PathBuf};
 
 #[test]

@@ -1,9 +1,9 @@
 //! Shells in reduced bases, from files: against all nodes, with exact derivatives; what files may not say.
 
-use crate::tests::reference::documents::{problem as parsed, read, values};
-use crate::tests::reference::gradients::{scaled_gradients_are_exact, thick_and_soft};
-use flexbody::driver::{accuracy, bases, explain, simulate};
-use flexbody::problem::{Override, Problem};
+use crate::reference::documents::{problem as parsed, read, values};
+use crate::reference::gradients::{scaled_gradients_are_exact, thick_and_soft};
+use flexbody_driver::{accuracy, bases, explain, simulate};
+use flexbody_problem::{Override, Problem};
 use serde_json::Value;
 
 /// The double plate with this mesh and basis, simulated by BDF.

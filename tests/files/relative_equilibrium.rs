@@ -5,9 +5,9 @@
 //! order is below the tolerance.
 
 use super::modal::modal;
-use crate::tests::reference::documents::{problem as parsed, run};
-use crate::tests::reference::gradients::gradients_are_exact;
-use flexbody::driver::start::notes;
+use crate::reference::documents::{problem as parsed, run};
+use crate::reference::gradients::gradients_are_exact;
+use flexbody_driver::start::notes;
 use serde_json::Value;
 
 const YOUNG: f64 = 7e10;

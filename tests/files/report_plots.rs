@@ -1,11 +1,11 @@
 //! Figures show the data inside their canvas, for any data.
 
-use flexbody::report::history::Column;
-use flexbody::report::plots::{
+use flexbody_report::history::Column;
+use flexbody_report::plots::{
     Barrier, BodyMotion, Connector, ConnectorKind, EnergyRun, Flight, Motion, Scenery, convergence,
     energy, motion,
 };
-use flexbody::report::{History, HistoryRow};
+use flexbody_report::{History, HistoryRow};
 
 /// Values of an attribute, in the order of the file.
 fn attributes<'a>(svg: &'a str, name: &str) -> Vec<&'a str> {

@@ -1,11 +1,11 @@
 //! Records are read back exactly, and differences between them are reported.
 
-use crate::tests::reference::documents::optimised;
-use flexbody::problem::Problem;
-use flexbody::report::compare::Comparison;
-use flexbody::report::history::Column;
-use flexbody::report::optimum::*;
-use flexbody::report::{
+use crate::reference::documents::optimised;
+use flexbody_problem::Problem;
+use flexbody_report::compare::Comparison;
+use flexbody_report::history::Column;
+use flexbody_report::optimum::*;
+use flexbody_report::{
     History, HistoryRow, Optimum, ReportError, Tolerances, atomic_write, compare, read_text,
     summary, write_all,
 };
@@ -134,8 +134,8 @@ fn optimum() -> Optimum {
 }
 
 fn moved(comparison: &Comparison) -> Vec<(&str, &str)> {
-    let moved = |row: &&flexbody::report::compare::Row| {
-        row.verdict == flexbody::report::compare::Verdict::Moved
+    let moved = |row: &&flexbody_report::compare::Row| {
+        row.verdict == flexbody_report::compare::Verdict::Moved
     };
     let rows = comparison.rows.iter().filter(moved);
     rows.map(|row| (row.kind, row.name.as_str())).collect()

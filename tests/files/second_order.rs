@@ -1,10 +1,10 @@
 //! The curvature at an optimum, against differences of the function, and with bounds without force.
 
-use crate::tests::reference::documents::optimised;
-use flexbody::driver::evaluate::Evaluated;
-use flexbody::driver::{KnownEvaluations, Optimisation, second_order};
-use flexbody::problem::Problem;
-use flexbody::report::optimum::{Curvature, SecondOrder};
+use crate::reference::documents::optimised;
+use flexbody_driver::evaluate::Evaluated;
+use flexbody_driver::{KnownEvaluations, Optimisation, second_order};
+use flexbody_problem::Problem;
+use flexbody_report::optimum::{Curvature, SecondOrder};
 
 /// A bar that swings fastest if it is hinged at d² = I/m from its centre.
 const SWING: &str = include_str!("../data/swing.json");

@@ -1,8 +1,8 @@
 //! Torsion springs in hinges along the edges of shells: energy, the limit of rigid plates, derivatives.
 
-use super::finite_elements::plates;
-use crate::tests::reference::documents::{problem as parsed, value};
-use crate::tests::reference::gradients::{scaled_gradients_are_exact, thick_and_soft};
+use crate::reference::documents::plates;
+use crate::reference::documents::{problem as parsed, value};
+use crate::reference::gradients::{scaled_gradients_are_exact, thick_and_soft};
 use serde_json::Value;
 
 /// Two plates with torsion springs in both hinges.

@@ -1,11 +1,11 @@
 //! What is drawn and written of shells that move: colours and histories of stress, displacements of points, files for
 //! ParaView; and the mass of a scene as a function.
 
-use super::finite_elements::plates;
-use crate::tests::reference::documents::problem as parsed;
-use flexbody::driver::elastic_figures::{deflections, limits, stresses};
-use flexbody::driver::figures::of_simulation;
-use flexbody::driver::{check, shell_fields, simulate};
+use crate::reference::documents::plates;
+use crate::reference::documents::problem as parsed;
+use flexbody_driver::elastic_figures::{deflections, limits, stresses};
+use flexbody_driver::figures::of_simulation;
+use flexbody_driver::{check, shell_fields, simulate};
 use serde_json::Value;
 use std::path::Path;
 

@@ -1,8 +1,8 @@
 //! Aggregates beside what they stand for, at rest and in motion.
 
-use crate::tests::reference::documents::{problem, run};
-use flexbody::driver::statics::StaticDesign;
-use flexbody::math::soft_max::Smoothed;
+use crate::reference::documents::{problem, run};
+use flexbody_driver::statics::StaticDesign;
+use flexbody_mathematics::math::soft_max::Smoothed;
 use serde_json::Value;
 
 /// What all functions of a file at rest stand for, with their values.

@@ -1,8 +1,8 @@
 //! The stability suite: a fast part is run and compared with the committed table. The table
 //! satisfies the claims of `docs/stability.md`.
 
-use flexbody::driver::stability::{names, stability};
-use flexbody::problem::Problem;
+use flexbody_driver::stability::{names, stability};
+use flexbody_problem::Problem;
 use std::collections::{BTreeMap, BTreeSet};
 use std::path::Path;
 

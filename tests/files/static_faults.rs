@@ -1,9 +1,9 @@
 //! Faults of files with structures: each is reported with its place.
 
-use flexbody::driver::analysed::AnalysisFailure;
-use flexbody::driver::statics::{StaticDesign, StaticsFailure};
-use flexbody::problem::Problem;
-use flexbody::structures::properties::PropertyFault;
+use flexbody_driver::analysed::AnalysisFailure;
+use flexbody_driver::statics::{StaticDesign, StaticsFailure};
+use flexbody_mechanics::structures::properties::PropertyFault;
+use flexbody_problem::Problem;
 use serde_json::Value;
 
 fn material() -> Value {

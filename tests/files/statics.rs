@@ -1,8 +1,8 @@
 //! Problems of structures that do not move: gradients, estimated errors, optima, faults, fields.
 
-use flexbody::driver::statics::{StaticDesign, error, fields};
-use flexbody::driver::{CheckedDerivative, KnownEvaluations, Optimisation, check, optimise};
-use flexbody::problem::{Override, Problem};
+use flexbody_driver::statics::{StaticDesign, error, fields};
+use flexbody_driver::{CheckedDerivative, KnownEvaluations, Optimisation, check, optimise};
+use flexbody_problem::{Override, Problem};
 use serde_json::Value;
 use std::ops::ControlFlow;
 use std::path::Path;

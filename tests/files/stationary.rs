@@ -1,9 +1,9 @@
 //! Optimisations that start or end where a derivative vanishes or does not exist: norms of zero, certificates at
 //! minima, and records of stationary starts.
 
-use crate::tests::reference::documents::{optimised, problem};
-use flexbody::driver::{certificate, certify};
-use flexbody::optimiser::Status;
+use crate::reference::documents::{optimised, problem};
+use flexbody_driver::{certificate, certify};
+use flexbody_optimiser::Status;
 use serde_json::Value;
 
 /// A ball of 2 kg that a force from rest moves along x for 1 s. Its speed is |F| t / m.

@@ -1,8 +1,8 @@
 //! A stress for each thickness: its values, gradients, faults, and how fast a plate is sized by it.
 
 use super::statics::{assert_gradients, solve, solved_at};
-use crate::tests::reference::documents::problem as parsed;
-use flexbody::problem::Problem;
+use crate::reference::documents::problem as parsed;
+use flexbody_problem::Problem;
 use serde_json::Value;
 
 /// A quarter of a clamped plate under pressure with this thickness and these functions.

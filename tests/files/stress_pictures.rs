@@ -1,15 +1,15 @@
 //! Stresses of beams in figures and fields are those of the functions; limits, looks of curves, and positions of points.
 
-use crate::tests::reference::documents::problem as parsed;
-use flexbody::driver::Simulation;
-use flexbody::driver::elastic_figures::{limits, stresses};
-use flexbody::driver::figures::of_simulation;
-use flexbody::driver::traces::positions;
-use flexbody::driver::{shell_fields, simulate};
-use flexbody::functions::Function;
-use flexbody::functions::evaluate::sample;
-use flexbody::problem::Problem;
-use flexbody::report::plots::{History, Limit, histories};
+use crate::reference::documents::problem as parsed;
+use flexbody_driver::Simulation;
+use flexbody_driver::elastic_figures::{limits, stresses};
+use flexbody_driver::figures::of_simulation;
+use flexbody_driver::traces::positions;
+use flexbody_driver::{shell_fields, simulate};
+use flexbody_mechanics::functions::Function;
+use flexbody_mechanics::functions::evaluate::sample;
+use flexbody_problem::Problem;
+use flexbody_report::plots::{History, Limit, histories};
 use serde_json::Value;
 use std::path::Path;
 

@@ -5,12 +5,12 @@
 //! With the settings of the files, both objectives agree to all digits of the reference, the
 //! designs to 1e-5 of the variables' ranges.
 
-use crate::tests::reference::documents::optimised;
-use flexbody::driver::Optimisation;
-use flexbody::driver::evaluate::Evaluated;
-use flexbody::math::Vec3;
-use flexbody::problem::{Override, Problem};
-use flexbody::report::optimum::{Activity, BoundSide};
+use crate::reference::documents::optimised;
+use flexbody_driver::Optimisation;
+use flexbody_driver::evaluate::Evaluated;
+use flexbody_mathematics::math::Vec3;
+use flexbody_problem::{Override, Problem};
+use flexbody_report::optimum::{Activity, BoundSide};
 use nalgebra::Rotation3;
 use serde_json::Value;
 use std::f64::consts::PI;

@@ -1,8 +1,8 @@
 //! Flexible scenes whose explicit steps stability bounds, and motions whose errors given steps do not tell.
 
-use crate::tests::reference::documents::problem;
-use flexbody::driver::unfollowed::unfollowed;
-use flexbody::driver::{Evaluated, simulate};
+use crate::reference::documents::problem;
+use flexbody_driver::unfollowed::unfollowed;
+use flexbody_driver::{Evaluated, simulate};
 use serde_json::Value;
 
 /// A soft beam that turns about its start on a hinge through the origin, from rest or with a rate.

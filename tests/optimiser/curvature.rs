@@ -1,6 +1,6 @@
 //! Programs that give their second derivatives: fewer iterations to the same optima.
 
-use flexbody::optimiser::{
+use flexbody_optimiser::{
     Curvature, Evaluation, EvaluationFailure, Gradients, Jacobian, Method, Nlp, Options, Outcome,
     Silent, Status, solve,
 };

@@ -1,6 +1,6 @@
 //! Derivatives of programs, compared with differences.
 
-use flexbody::optimiser::{Nlp, derivative_errors};
+use flexbody_optimiser::{Nlp, derivative_errors};
 
 use crate::problems::hock_schittkowski;
 
@@ -33,7 +33,7 @@ fn the_derivatives_of_all_problems_agree_with_differences() {
 
 #[test]
 fn a_wrong_derivative_is_named() {
-    use flexbody::optimiser::{Functions, Jacobian};
+    use flexbody_optimiser::{Functions, Jacobian};
     for place in 0..6 {
         let wrong = |k: usize, v: f64| {
             if k == place {

@@ -1,7 +1,7 @@
 //! Ends that the residuals alone would misname: wrong gradients, points without multipliers, and
 //! sizes for which a method is not meant.
 
-use flexbody::optimiser::{Functions, Jacobian, Method, Options, Outcome, Silent, Status, solve};
+use flexbody_optimiser::{Functions, Jacobian, Method, Options, Outcome, Silent, Status, solve};
 
 const METHODS: [Method; 3] = [Method::InteriorPoint, Method::TrustRegion, Method::Auto];
 const FREE: [f64; 2] = [f64::NEG_INFINITY, f64::INFINITY];

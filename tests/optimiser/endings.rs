@@ -5,7 +5,7 @@ use crate::problems;
 use crate::problems::residuals;
 use crate::problems::scaled;
 
-use flexbody::optimiser::{BoundSide, Kkt, Method, Options, Outcome, Silent, Status, solve};
+use flexbody_optimiser::{BoundSide, Kkt, Method, Options, Outcome, Silent, Status, solve};
 use problems::collected::collected;
 use problems::dual::Dual;
 use problems::hock_schittkowski;

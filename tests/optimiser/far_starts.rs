@@ -5,7 +5,7 @@ use crate::problems;
 use crate::problems::least_squares;
 use crate::problems::residuals;
 
-use flexbody::optimiser::{
+use flexbody_optimiser::{
     Evaluation, EvaluationFailure, Gradients, Method, Nlp, Options, Outcome, Silent, Status, solve,
 };
 use least_squares::least_squares;

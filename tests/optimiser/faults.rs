@@ -3,9 +3,9 @@
 
 use std::ops::ControlFlow;
 
-use flexbody::optimiser::{Barrier, Observer, Row};
-use flexbody::optimiser::{Evaluation, EvaluationFailure, Gradients};
-use flexbody::optimiser::{
+use flexbody_optimiser::{Barrier, Observer, Row};
+use flexbody_optimiser::{Evaluation, EvaluationFailure, Gradients};
+use flexbody_optimiser::{
     Functions, Jacobian, Method, Nlp, Options, Outcome, Silent, Status, solve,
 };
 

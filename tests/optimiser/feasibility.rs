@@ -3,7 +3,7 @@
 
 use crate::problems;
 
-use flexbody::optimiser::{Method, Options, Outcome, Silent, Status, solve};
+use flexbody_optimiser::{Method, Options, Outcome, Silent, Status, solve};
 use problems::dual::Dual;
 use problems::problem::{INF, Problem};
 

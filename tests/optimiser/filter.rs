@@ -1,7 +1,7 @@
 //! The tests that the line search puts to a point, against their definitions in Wächter & Biegler
-//! (2006). Compiled with the library (`src/tests.rs`).
+//! (2006).
 
-use crate::optimiser::{Filter, Measure};
+use flexbody_optimiser::{Filter, Measure};
 
 /// Margin γ, share η of the predicted decrease, and exponents of the switching condition.
 const GAMMA: f64 = 1e-5;

@@ -1,6 +1,6 @@
 //! Runs that cannot succeed end early and claim nothing.
 
-use flexbody::optimiser::{
+use flexbody_optimiser::{
     Evaluation, EvaluationFailure, Gradients, Jacobian, Method, Nlp, Options, Outcome, Silent,
     Status, solve,
 };

@@ -9,7 +9,7 @@ use crate::problems::least_squares;
 use std::ops::ControlFlow;
 
 use faulty::{Fault, Faulty};
-use flexbody::optimiser::{
+use flexbody_optimiser::{
     Evaluation, EvaluationFailure, Gradients, Method, Nlp, Observer, Options, Outcome, Row, Silent,
     Status, solve,
 };

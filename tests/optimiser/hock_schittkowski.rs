@@ -7,7 +7,7 @@ use crate::problems::allowed;
 use crate::problems::residuals;
 
 use allowed::{ALLOWED, Allowed};
-use flexbody::optimiser::{Method, Options, Outcome, Silent, solve};
+use flexbody_optimiser::{Method, Options, Outcome, Silent, solve};
 use problems::hock_schittkowski;
 use problems::problem::Problem;
 use residuals::Residuals;

@@ -1,7 +1,7 @@
 //! Many variables and many rows: the same optima by dense and by sparse matrices, in memory that
 //! grows with the size.
 
-use flexbody::optimiser::{
+use flexbody_optimiser::{
     Evaluation, EvaluationFailure, Functions, Gradients, Jacobian, Method, Nlp, Options, Outcome,
     Silent, Status, solve,
 };

@@ -7,6 +7,7 @@ mod endings;
 mod far_starts;
 mod faults;
 mod feasibility;
+mod filter;
 mod gives_up;
 mod hard_cases;
 mod hock_schittkowski;

@@ -5,7 +5,7 @@ use crate::problems::recorded;
 
 use std::ops::ControlFlow;
 
-use flexbody::optimiser::{
+use flexbody_optimiser::{
     Method, Observer, Options, Row, SavedState, Silent, Status, resume, solve,
 };
 use problems::hock_schittkowski;

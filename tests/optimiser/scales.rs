@@ -3,7 +3,7 @@
 
 use crate::problems;
 
-use flexbody::optimiser::{
+use flexbody_optimiser::{
     Evaluation, EvaluationFailure, Gradients, Method, Nlp, Options, Outcome, Silent, Status, solve,
 };
 use problems::dual::Dual;

@@ -1,6 +1,6 @@
 //! Trusses of least weight in the units of their sources and in others.
 
-use flexbody::optimiser::{Method, Options, Silent, solve};
+use flexbody_optimiser::{Method, Options, Silent, solve};
 
 use crate::problems::sized_truss::{SizedTruss, UNITS, trusses};
 

@@ -5,7 +5,7 @@ use crate::problems;
 use crate::problems::least_squares;
 use crate::problems::scaled;
 
-use flexbody::optimiser::{Method, Nlp, Options, Outcome, Silent, Status, solve};
+use flexbody_optimiser::{Method, Nlp, Options, Outcome, Silent, Status, solve};
 use least_squares::least_squares;
 use problems::dual::Dual;
 use problems::hock_schittkowski;

@@ -1,12 +1,14 @@
 //! Open joints in random states, and their derivatives by the complex step.
 
 use super::models::{KINDS, Numbers, axes_along, joint};
-use flexbody::math::scalar::COMPLEX_STEP;
-use flexbody::math::{Complex64, Parameters, Scalar};
-use flexbody::model::Interpolation;
-use flexbody::model::{DegreeOfFreedom, Drive, JointKind, Model, Smoothness, TimeFunction};
-use flexbody::system::bodies::{BodyMotion, rates};
-use flexbody::system::{InMotion, Numbering, joints, placement};
+use flexbody_mathematics::math::scalar::COMPLEX_STEP;
+use flexbody_mathematics::math::{Complex64, Parameters, Scalar};
+use flexbody_mechanics::model::Interpolation;
+use flexbody_mechanics::model::{
+    DegreeOfFreedom, Drive, JointKind, Model, Smoothness, TimeFunction,
+};
+use flexbody_mechanics::system::bodies::{BodyMotion, rates};
+use flexbody_mechanics::system::{InMotion, Numbering, joints, placement};
 
 /// A model in a state, and random numbers for cotangents.
 pub struct Case {

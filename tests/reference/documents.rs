@@ -1,8 +1,8 @@
 //! Problem files as JSON values, for tests of families of scenes.
 
-use flexbody::driver::known_evaluations::KnownEvaluations;
-use flexbody::driver::{Optimisation, Simulation, optimise, simulate};
-use flexbody::problem::Problem;
+use flexbody_driver::known_evaluations::KnownEvaluations;
+use flexbody_driver::{Optimisation, Simulation, optimise, simulate};
+use flexbody_problem::Problem;
 use serde_json::{Map, Value};
 use std::ops::ControlFlow;
 use std::path::Path;
@@ -98,4 +98,15 @@ pub fn optimised(problem: &Problem) -> Optimisation {
     let mut progress = |_: &_| ControlFlow::Continue(());
     let known = KnownEvaluations::default();
     optimise(problem, "", None, known, &mut progress).expect("has an objective")
+}
+
+/// The double plate with this mesh, duration, number of steps and method.
+pub fn plates(elements: [usize; 2], duration: f64, steps: usize, method: &Value) -> Value {
+    let mut document = read("problems/flexible/double_plate.json");
+    for body in ["first", "second"] {
+        document["bodies"][body]["elements"]["structure"]["mesh"]["plate"]["elements"] =
+            json!(elements);
+    }
+    document["simulation"] = json!({"duration": duration, "steps": steps, "method": method});
+    document
 }

@@ -2,11 +2,13 @@
 //! displacements of these, so that all integrals are sums.
 
 use super::models::{Numbers, axes_along, joint};
-use flexbody::math::{Mat3, Vec3, rotation};
-use flexbody::model::flexible::{Form, Modal, ModalInertia, ModalStiffness, Quadratic, Strain};
-use flexbody::model::{Axes, JointKind, Load, LoadKind, Model, TimeFunction};
-use flexbody::system::bodies::BodyMotion;
-use flexbody::system::flexible;
+use flexbody_mathematics::math::{Mat3, Vec3, rotation};
+use flexbody_mechanics::model::flexible::{
+    Form, Modal, ModalInertia, ModalStiffness, Quadratic, Strain,
+};
+use flexbody_mechanics::model::{Axes, JointKind, Load, LoadKind, Model, TimeFunction};
+use flexbody_mechanics::system::bodies::BodyMotion;
+use flexbody_mechanics::system::flexible;
 
 /// Points with masses, and their displacements by each mode.
 pub struct Points {

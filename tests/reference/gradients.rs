@@ -1,7 +1,7 @@
 //! Gradients of problems against the complex step.
 
-use flexbody::driver::check;
-use flexbody::problem::Problem;
+use flexbody_driver::check;
+use flexbody_problem::Problem;
 use serde_json::Value;
 
 /// Asserts that every derivative of every function at the start agrees with the complex step to 1e-12 of the

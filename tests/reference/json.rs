@@ -57,7 +57,7 @@ impl Writer {
 /// A [`serde_json::Value`] from JSON with Rust expressions as values and, in parentheses, as keys.
 macro_rules! json {
     ($($tokens:tt)+) => {{
-        let mut writer = $crate::tests::json::Writer::default();
+        let mut writer = $crate::json::Writer::default();
         write_json!(writer $($tokens)+);
         writer.finish()
     }};

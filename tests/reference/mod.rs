@@ -12,10 +12,10 @@ pub mod models;
 pub(crate) mod mutations;
 pub mod shells;
 
-use flexbody::integrate::{Method, Multipliers, Settings, Start, Trajectory, simulate};
-use flexbody::math::{Mat3, Vec3};
-use flexbody::model::{JointKind, Mobility, Model, RigidBody};
-use flexbody::system::observe::reactions;
+use flexbody_mathematics::math::{Mat3, Vec3};
+use flexbody_mechanics::integrate::{Method, Multipliers, Settings, Start, Trajectory, simulate};
+use flexbody_mechanics::model::{JointKind, Mobility, Model, RigidBody};
+use flexbody_mechanics::system::observe::reactions;
 use serde_json::Value;
 
 /// One instant of a reference trajectory.

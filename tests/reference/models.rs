@@ -1,7 +1,7 @@
 //! General models: full inertias, skew axes, no symmetry that hides a term.
 
-use flexbody::math::{Mat3, Vec3, rotation};
-use flexbody::model::{Joint, JointFrame, JointKind, Mobility, Model, RigidBody};
+use flexbody_mathematics::math::{Mat3, Vec3, rotation};
+use flexbody_mechanics::model::{Joint, JointFrame, JointKind, Mobility, Model, RigidBody};
 
 /// All kinds of joint.
 pub const KINDS: [JointKind; 8] = [

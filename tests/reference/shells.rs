@@ -3,22 +3,22 @@
 
 use super::flexible::add_loads;
 use super::models::{Numbers, axes_along, joint};
-use flexbody::integrate::Trajectory;
-use flexbody::math::{Mat3, Vec3};
-use flexbody::model::finite::FiniteElements;
-use flexbody::model::{
+use flexbody_mathematics::math::{Mat3, Vec3};
+use flexbody_mechanics::integrate::Trajectory;
+use flexbody_mechanics::model::finite::FiniteElements;
+use flexbody_mechanics::model::{
     Axes, DistributedLoad, Form, Interpolation, JointKind, Load, LoadKind, Model, Smoothness,
     Spread, TimeFunction,
 };
-use flexbody::structures::beam::{Beam, Section, SectionValues};
-use flexbody::structures::floating::{FrameNodes, PointMotion, Surface, element_mesh};
-use flexbody::structures::generate::panel;
-use flexbody::structures::lumped_mass::LumpedMass;
-use flexbody::structures::material::Material;
-use flexbody::structures::mesh::Mesh;
-use flexbody::structures::parts::{coordinates, of_beam, of_mass};
-use flexbody::structures::structure::Structure;
-use flexbody::system::reduction::{ProjectedShells, project};
+use flexbody_mechanics::structures::beam::{Beam, Section, SectionValues};
+use flexbody_mechanics::structures::floating::{FrameNodes, PointMotion, Surface, element_mesh};
+use flexbody_mechanics::structures::generate::panel;
+use flexbody_mechanics::structures::lumped_mass::LumpedMass;
+use flexbody_mechanics::structures::material::Material;
+use flexbody_mechanics::structures::mesh::Mesh;
+use flexbody_mechanics::structures::parts::{coordinates, of_beam, of_mass};
+use flexbody_mechanics::structures::structure::Structure;
+use flexbody_mechanics::system::reduction::{ProjectedShells, project};
 use std::sync::Arc;
 
 /// Shells of a body, and how their nodes move.

@@ -2,9 +2,9 @@
 //! elements with offsets. The transposes are checked by dot products.
 
 use super::sample::{ALUMINIUM, Compared, Numbers, complex_step};
-use flexbody::math::{Complex64, Scalar, Vec3};
-use flexbody::structures::beam::{BEAM_NODES, Beam, BeamMotion, Section, SectionValues};
-use flexbody::structures::shell::{ElementMatrix, MassMoments};
+use flexbody_mathematics::math::{Complex64, Scalar, Vec3};
+use flexbody_mechanics::structures::beam::{BEAM_NODES, Beam, BeamMotion, Section, SectionValues};
+use flexbody_mechanics::structures::shell::{ElementMatrix, MassMoments};
 
 fn sections() -> Vec<Section<f64>> {
     let rectangle = |width, height| Section::Rectangle { width, height };
@@ -241,7 +241,7 @@ fn rigid_motions_have_no_strain_energy() {
 #[test]
 fn torsion_constants_of_rectangles_are_those_of_the_table() {
     let constant = |width: f64, height: f64| {
-        let unit = flexbody::structures::material::Material {
+        let unit = flexbody_mechanics::structures::material::Material {
             young: 2.0,
             poisson: 0.0,
             ..ALUMINIUM

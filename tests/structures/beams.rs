@@ -2,18 +2,18 @@
 //! frequencies; and the limits of von Karman's strains.
 
 use super::sample::{ALUMINIUM, Numbers};
-use flexbody::math::Vec3;
-use flexbody::structures::beam::Section;
-use flexbody::structures::generate::{
+use flexbody_mathematics::math::Vec3;
+use flexbody_mechanics::structures::beam::Section;
+use flexbody_mechanics::structures::generate::{
     GeneratedBeams, Member, any_orientation, curved_beam, frame, straight_beam,
 };
-use flexbody::structures::loads::Load;
-use flexbody::structures::modes::ModalProblem;
-use flexbody::structures::quality::MeshFault;
-use flexbody::structures::statics::StaticProblem;
-use flexbody::structures::structure::Structure;
-use flexbody::structures::supports::{NodeUnknowns, Support};
-use flexbody::structures::von_karman::LoadSteps;
+use flexbody_mechanics::structures::loads::Load;
+use flexbody_mechanics::structures::modes::ModalProblem;
+use flexbody_mechanics::structures::quality::MeshFault;
+use flexbody_mechanics::structures::statics::StaticProblem;
+use flexbody_mechanics::structures::structure::Structure;
+use flexbody_mechanics::structures::supports::{NodeUnknowns, Support};
+use flexbody_mechanics::structures::von_karman::LoadSteps;
 use nalgebra::Rotation3;
 
 const PI: f64 = std::f64::consts::PI;

@@ -1,19 +1,19 @@
 //! Plates with beams: derivatives of functions and frequencies, also in sizes of generators.
 
 use super::sample::{ALUMINIUM, Compared, Numbers, complex_step, structure_numbers, with_numbers};
-use flexbody::math::{Complex64, Vec3};
-use flexbody::structures::beam::Section;
-use flexbody::structures::functions::{Function, Solved};
-use flexbody::structures::generate::plate;
-use flexbody::structures::gradient::{gradient, gradient_von_karman};
-use flexbody::structures::loads::Load;
-use flexbody::structures::lumped_mass::LumpedMass;
-use flexbody::structures::modes::{ModalProblem, Modes, frequency_gradient, reduced};
-use flexbody::structures::shell::Terms;
-use flexbody::structures::statics::StaticProblem;
-use flexbody::structures::structure::Structure;
-use flexbody::structures::supports::{NodeUnknowns, Support};
-use flexbody::structures::von_karman::LoadSteps;
+use flexbody_mathematics::math::{Complex64, Vec3};
+use flexbody_mechanics::structures::beam::Section;
+use flexbody_mechanics::structures::functions::{Function, Solved};
+use flexbody_mechanics::structures::generate::plate;
+use flexbody_mechanics::structures::gradient::{gradient, gradient_von_karman};
+use flexbody_mechanics::structures::loads::Load;
+use flexbody_mechanics::structures::lumped_mass::LumpedMass;
+use flexbody_mechanics::structures::modes::{ModalProblem, Modes, frequency_gradient, reduced};
+use flexbody_mechanics::structures::shell::Terms;
+use flexbody_mechanics::structures::statics::StaticProblem;
+use flexbody_mechanics::structures::structure::Structure;
+use flexbody_mechanics::structures::supports::{NodeUnknowns, Support};
+use flexbody_mechanics::structures::von_karman::LoadSteps;
 
 /// A disturbed plate with a beam below one row of edges; its line is off the nodes.
 fn stiffened(numbers: &mut Numbers) -> Structure<f64> {

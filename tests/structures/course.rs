@@ -1,12 +1,12 @@
 //! The linear obstacle course of shells (MacNeal & Harder 1985; Belytschko et al. 1985; Morley 1963), six
 //! unknowns a node. Each function gives the displacement on a mesh of size n as a part of the published one.
 
-use flexbody::structures::generate::{Generated, curved_panel, panel, plate};
-use flexbody::structures::loads::Load;
-use flexbody::structures::material::Material;
-use flexbody::structures::statics::StaticProblem;
-use flexbody::structures::structure::Structure;
-use flexbody::structures::supports::{NodeUnknowns, Support};
+use flexbody_mechanics::structures::generate::{Generated, curved_panel, panel, plate};
+use flexbody_mechanics::structures::loads::Load;
+use flexbody_mechanics::structures::material::Material;
+use flexbody_mechanics::structures::statics::StaticProblem;
+use flexbody_mechanics::structures::structure::Structure;
+use flexbody_mechanics::structures::supports::{NodeUnknowns, Support};
 use nalgebra::Vector3 as Vec3;
 
 const NONE: [bool; 3] = [false; 3];

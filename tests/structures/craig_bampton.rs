@@ -1,23 +1,23 @@
 //! Reductions of free bodies against the frequencies of their full matrices, closed forms and exact integrals.
 
 use super::sample::{ALUMINIUM, Numbers};
-use flexbody::math::{Mat3, Vec3};
-use flexbody::structures::assembly::Assembly;
-use flexbody::structures::beam::Section;
-use flexbody::structures::damping::RayleighDamping;
-use flexbody::structures::generate::{Generated, plate, straight_beam};
-use flexbody::structures::modal::ModalNumbers;
-use flexbody::structures::modal::craig_bampton::{Reduction, reduce};
-use flexbody::structures::modal::free_body::{FreeBody, NoFreeBody};
-use flexbody::structures::modal::frequencies::{Held, frequencies};
-use flexbody::structures::modal::imported::{Factors, ImportedDamping};
-use flexbody::structures::modal::interfaces::{Holding, Interface, NoReduction};
-use flexbody::structures::modal::written::Entry;
-use flexbody::structures::modes::ModalProblem;
-use flexbody::structures::shell::Terms;
-use flexbody::structures::state::NodalMotion;
-use flexbody::structures::structure::Structure;
-use flexbody::structures::supports::NodeUnknowns;
+use flexbody_mathematics::math::{Mat3, Vec3};
+use flexbody_mechanics::structures::assembly::Assembly;
+use flexbody_mechanics::structures::beam::Section;
+use flexbody_mechanics::structures::damping::RayleighDamping;
+use flexbody_mechanics::structures::generate::{Generated, plate, straight_beam};
+use flexbody_mechanics::structures::modal::ModalNumbers;
+use flexbody_mechanics::structures::modal::craig_bampton::{Reduction, reduce};
+use flexbody_mechanics::structures::modal::free_body::{FreeBody, NoFreeBody};
+use flexbody_mechanics::structures::modal::frequencies::{Held, frequencies};
+use flexbody_mechanics::structures::modal::imported::{Factors, ImportedDamping};
+use flexbody_mechanics::structures::modal::interfaces::{Holding, Interface, NoReduction};
+use flexbody_mechanics::structures::modal::written::Entry;
+use flexbody_mechanics::structures::modes::ModalProblem;
+use flexbody_mechanics::structures::shell::Terms;
+use flexbody_mechanics::structures::state::NodalMotion;
+use flexbody_mechanics::structures::structure::Structure;
+use flexbody_mechanics::structures::supports::NodeUnknowns;
 
 /// Stiffness and mass of a structure without supports, as a file would have them.
 fn exported(structure: &Structure<f64>) -> FreeBody {

@@ -2,16 +2,16 @@
 //! solution, on a curved and distorted mesh with a fold, for both kinds of unknowns.
 
 use super::sample::{ALUMINIUM, Compared, Numbers, complex_step, structure_numbers, with_numbers};
-use flexbody::math::{Complex64, Scalar, Vec3};
-use flexbody::structures::functions::{Aggregate, Function, Solved};
-use flexbody::structures::generate::panel;
-use flexbody::structures::gradient::{gradient, gradient_von_karman};
-use flexbody::structures::loads::Load;
-use flexbody::structures::shell::Terms;
-use flexbody::structures::statics::StaticProblem;
-use flexbody::structures::structure::Structure;
-use flexbody::structures::supports::{NodeUnknowns, Support};
-use flexbody::structures::von_karman::LoadSteps;
+use flexbody_mathematics::math::{Complex64, Scalar, Vec3};
+use flexbody_mechanics::structures::functions::{Aggregate, Function, Solved};
+use flexbody_mechanics::structures::generate::panel;
+use flexbody_mechanics::structures::gradient::{gradient, gradient_von_karman};
+use flexbody_mechanics::structures::loads::Load;
+use flexbody_mechanics::structures::shell::Terms;
+use flexbody_mechanics::structures::statics::StaticProblem;
+use flexbody_mechanics::structures::structure::Structure;
+use flexbody_mechanics::structures::supports::{NodeUnknowns, Support};
+use flexbody_mechanics::structures::von_karman::LoadSteps;
 
 fn load_numbers<S: Scalar>(cases: &[Vec<Load<S>>]) -> Vec<S> {
     let mut all = Vec::new();

@@ -2,14 +2,14 @@
 //! planes and twist.
 
 use super::sample::{ALUMINIUM, Numbers};
-use flexbody::math::Vec3;
-use flexbody::structures::beam::{BEAM_NODES, Beam, BeamMotion, Section, SectionValues};
-use flexbody::structures::generate::{GeneratedBeams, straight_beam};
-use flexbody::structures::loads::Load;
-use flexbody::structures::statics::{StaticFailure, StaticProblem};
-use flexbody::structures::structure::Structure;
-use flexbody::structures::supports::{NodeUnknowns, Support};
-use flexbody::structures::von_karman::LoadSteps;
+use flexbody_mathematics::math::Vec3;
+use flexbody_mechanics::structures::beam::{BEAM_NODES, Beam, BeamMotion, Section, SectionValues};
+use flexbody_mechanics::structures::generate::{GeneratedBeams, straight_beam};
+use flexbody_mechanics::structures::loads::Load;
+use flexbody_mechanics::structures::statics::{StaticFailure, StaticProblem};
+use flexbody_mechanics::structures::structure::Structure;
+use flexbody_mechanics::structures::supports::{NodeUnknowns, Support};
+use flexbody_mechanics::structures::von_karman::LoadSteps;
 use nalgebra::Rotation3;
 
 const PI: f64 = std::f64::consts::PI;

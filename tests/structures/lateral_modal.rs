@@ -1,10 +1,10 @@
 //! Lateral buckling and Wagner's term of beams by functions, and their section forces.
 
 use super::sample::{ALUMINIUM, Numbers};
-use flexbody::model::flexible::{ModalStiffness, Quadratic};
-use flexbody::structures::beam::Section;
-use flexbody::structures::modal::sections::SectionForce;
-use flexbody::structures::modal::{
+use flexbody_mechanics::model::flexible::{ModalStiffness, Quadratic};
+use flexbody_mechanics::structures::beam::Section;
+use flexbody_mechanics::structures::modal::sections::SectionForce;
+use flexbody_mechanics::structures::modal::{
     BeamDamping, BeamFrame, BeamModes, BendingFunctions, FlexibleBeam, StrainMeasure,
 };
 use nalgebra::{DMatrix, DVector};
@@ -106,7 +106,7 @@ fn unit(body: &FlexibleBeam<f64>) -> f64 {
 #[test]
 fn cantilevers_buckle_sideways_at_the_loads_of_the_book() {
     let distributed = |body: &FlexibleBeam<f64>| {
-        let rule = flexbody::math::legendre::gauss(8);
+        let rule = flexbody_mathematics::math::legendre::gauss(8);
         let zero = DVector::zeros(body.modes.count());
         rule.iter()
             .fold(zero, |sum, &(xi, w)| sum + down(body, xi, w))

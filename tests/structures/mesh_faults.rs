@@ -1,8 +1,8 @@
 //! Faults of meshes are reported with the element or node. Valid meshes have none.
 
-use flexbody::math::Vec3;
-use flexbody::structures::generate::{curved_panel, cylinder, plate};
-use flexbody::structures::quality::{MeshFault, faults};
+use flexbody_mathematics::math::Vec3;
+use flexbody_mechanics::structures::generate::{curved_panel, cylinder, plate};
+use flexbody_mechanics::structures::quality::{MeshFault, faults};
 
 #[test]
 fn generated_meshes_are_sound_at_any_aspect_ratio() {
@@ -20,7 +20,7 @@ fn generated_meshes_are_sound_at_any_aspect_ratio() {
 #[test]
 fn faults_name_the_element_and_the_node() {
     let sound = plate([1.0, 1.0], [3, 2]);
-    let with = |change: &dyn Fn(&mut flexbody::structures::generate::Generated<f64>)| {
+    let with = |change: &dyn Fn(&mut flexbody_mechanics::structures::generate::Generated<f64>)| {
         let mut generated = sound.clone();
         change(&mut generated);
         faults(&generated.mesh, &generated.nodes)

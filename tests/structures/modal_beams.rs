@@ -2,12 +2,12 @@
 //! stretch, and the derivatives of all their numbers.
 
 use super::sample::{ALUMINIUM, Numbers};
-use flexbody::math::{Complex64, Dual, Mat3, Scalar, Vec3};
-use flexbody::model::flexible::Quadratic;
-use flexbody::structures::beam::{Section, SectionValues};
-use flexbody::structures::modal::frequencies::{Held, frequencies};
-use flexbody::structures::modal::sections::SectionForce;
-use flexbody::structures::modal::{
+use flexbody_mathematics::math::{Complex64, Dual, Mat3, Scalar, Vec3};
+use flexbody_mechanics::model::flexible::Quadratic;
+use flexbody_mechanics::structures::beam::{Section, SectionValues};
+use flexbody_mechanics::structures::modal::frequencies::{Held, frequencies};
+use flexbody_mechanics::structures::modal::sections::SectionForce;
+use flexbody_mechanics::structures::modal::{
     BeamDamping, BeamFrame, BeamModes, BendingFunctions, FlexibleBeam, ModalNumbers, StrainMeasure,
 };
 use nalgebra::{DMatrix, DVector};

@@ -1,14 +1,14 @@
 //! Derivatives of frequencies against the complex step, and against differences of whole solutions.
 
 use super::sample::{ALUMINIUM, Compared, Numbers, complex_step, structure_numbers, with_numbers};
-use flexbody::math::{Complex64, Vec3};
-use flexbody::structures::generate::{Generated, panel, plate};
-use flexbody::structures::lumped_mass::LumpedMass;
-use flexbody::structures::modes::{
+use flexbody_mathematics::math::{Complex64, Vec3};
+use flexbody_mechanics::structures::generate::{Generated, panel, plate};
+use flexbody_mechanics::structures::lumped_mass::LumpedMass;
+use flexbody_mechanics::structures::modes::{
     ModalFailure, ModalProblem, Modes, frequency_gradient, lowest_frequency, reduced,
 };
-use flexbody::structures::structure::Structure;
-use flexbody::structures::supports::{NodeUnknowns, Support};
+use flexbody_mechanics::structures::structure::Structure;
+use flexbody_mechanics::structures::supports::{NodeUnknowns, Support};
 use nalgebra::DMatrix;
 
 type Matrix = DMatrix<Complex64>;
@@ -231,7 +231,7 @@ fn the_aggregate_does_not_jump_where_modes_swap() {
     let supports = ["x0", "x1", "y0", "y1"].map(Support::clamp);
     let rho = 0.05;
     let at = |length: f64| {
-        let step = flexbody::math::Dual::new(length, 1.0);
+        let step = flexbody_mathematics::math::Dual::new(length, 1.0);
         let Generated { mesh, nodes } = plate([step, 1.0.into()], [3, 3]);
         let real = nodes.iter().map(|x| x.map(|x| x.re)).collect();
         let structure = Structure::uniform(mesh, real, 0.1, ALUMINIUM).expect("sound");

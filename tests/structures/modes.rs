@@ -1,12 +1,12 @@
 //! Natural frequencies against other codes and solutions, and the count that detects missed ones.
 
 use super::sample::ALUMINIUM;
-use flexbody::structures::generate::{Generated, plate};
-use flexbody::structures::lumped_mass::LumpedMass;
-use flexbody::structures::material::Material;
-use flexbody::structures::modes::{ModalFailure, ModalProblem, Modes};
-use flexbody::structures::structure::Structure;
-use flexbody::structures::supports::{NodeUnknowns, Support};
+use flexbody_mechanics::structures::generate::{Generated, plate};
+use flexbody_mechanics::structures::lumped_mass::LumpedMass;
+use flexbody_mechanics::structures::material::Material;
+use flexbody_mechanics::structures::modes::{ModalFailure, ModalProblem, Modes};
+use flexbody_mechanics::structures::structure::Structure;
+use flexbody_mechanics::structures::supports::{NodeUnknowns, Support};
 use nalgebra::{DMatrix, SymmetricEigen};
 use serde_json::Value;
 

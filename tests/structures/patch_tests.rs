@@ -1,12 +1,12 @@
 //! Patch tests on distorted meshes, and plates without locking.
 
 use super::sample::{ALUMINIUM, Numbers};
-use flexbody::math::Vec3;
-use flexbody::structures::generate::{Generated, plate};
-use flexbody::structures::loads::Load;
-use flexbody::structures::statics::{StaticFailure, StaticProblem};
-use flexbody::structures::structure::Structure;
-use flexbody::structures::supports::{NodeUnknowns, Support};
+use flexbody_mathematics::math::Vec3;
+use flexbody_mechanics::structures::generate::{Generated, plate};
+use flexbody_mechanics::structures::loads::Load;
+use flexbody_mechanics::structures::statics::{StaticFailure, StaticProblem};
+use flexbody_mechanics::structures::structure::Structure;
+use flexbody_mechanics::structures::supports::{NodeUnknowns, Support};
 
 /// A flat plate whose inner corner nodes are displaced at random. Middle nodes are in the middle of
 /// straight edges.
@@ -97,7 +97,9 @@ fn nodal_forces(
     structure: &Structure<f64>,
     motion: &[(Vec3<f64>, Vec3<f64>)],
 ) -> (Vec<nalgebra::Vector6<f64>>, f64, f64) {
-    use flexbody::structures::shell::{Field, Motion, NODES, Shell, ShellCotangent, Terms};
+    use flexbody_mechanics::structures::shell::{
+        Field, Motion, NODES, Shell, ShellCotangent, Terms,
+    };
     let mut total = vec![nalgebra::Vector6::zeros(); structure.nodes.len()];
     let (mut largest, mut energy): (f64, f64) = (0.0, 0.0);
     for element in &structure.topology.mesh.shells {

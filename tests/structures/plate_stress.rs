@@ -1,13 +1,13 @@
 //! Stresses at the Gauss points of a plate against a closed form.
 
 use super::sample::ALUMINIUM;
-use flexbody::structures::functions::Solved;
-use flexbody::structures::generate::{Generated, plate};
-use flexbody::structures::loads::Load;
-use flexbody::structures::shell::Terms;
-use flexbody::structures::statics::StaticProblem;
-use flexbody::structures::structure::Structure;
-use flexbody::structures::supports::{NodeUnknowns, Support};
+use flexbody_mechanics::structures::functions::Solved;
+use flexbody_mechanics::structures::generate::{Generated, plate};
+use flexbody_mechanics::structures::loads::Load;
+use flexbody_mechanics::structures::shell::Terms;
+use flexbody_mechanics::structures::statics::StaticProblem;
+use flexbody_mechanics::structures::structure::Structure;
+use flexbody_mechanics::structures::supports::{NodeUnknowns, Support};
 
 const PI: f64 = std::f64::consts::PI;
 

@@ -1,17 +1,17 @@
 //! Reactions balance the loads; bodies have their known inertia.
 
 use super::sample::{ALUMINIUM, Numbers};
-use flexbody::math::Vec3;
-use flexbody::structures::beam::Section;
-use flexbody::structures::functions::{Function, Solved};
-use flexbody::structures::generate::{curved_panel, cylinder, plate, straight_beam};
-use flexbody::structures::loads::Load;
-use flexbody::structures::lumped_mass::LumpedMass;
-use flexbody::structures::shell::Terms;
-use flexbody::structures::statics::StaticProblem;
-use flexbody::structures::structure::Structure;
-use flexbody::structures::supports::{NodeUnknowns, Support};
-use flexbody::structures::von_karman::LoadSteps;
+use flexbody_mathematics::math::Vec3;
+use flexbody_mechanics::structures::beam::Section;
+use flexbody_mechanics::structures::functions::{Function, Solved};
+use flexbody_mechanics::structures::generate::{curved_panel, cylinder, plate, straight_beam};
+use flexbody_mechanics::structures::loads::Load;
+use flexbody_mechanics::structures::lumped_mass::LumpedMass;
+use flexbody_mechanics::structures::shell::Terms;
+use flexbody_mechanics::structures::statics::StaticProblem;
+use flexbody_mechanics::structures::structure::Structure;
+use flexbody_mechanics::structures::supports::{NodeUnknowns, Support};
+use flexbody_mechanics::structures::von_karman::LoadSteps;
 
 /// The total forces and moments of all supports are the opposite of those of the loads: in linear
 /// statics about any point. With von Karman's strains only the forces are: moments of loads refer

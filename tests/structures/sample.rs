@@ -1,9 +1,9 @@
 //! Pseudo-random numbers that are the same in every run, and comparisons of derivatives.
 
-use flexbody::math::{Complex64, Scalar, Vec3};
-use flexbody::structures::material::Material;
-use flexbody::structures::shell::{Field, Motion, NODES, Shell};
-use flexbody::structures::structure::Structure;
+use flexbody_mathematics::math::{Complex64, Scalar, Vec3};
+use flexbody_mechanics::structures::material::Material;
+use flexbody_mechanics::structures::shell::{Field, Motion, NODES, Shell};
+use flexbody_mechanics::structures::structure::Structure;
 
 /// A sequence of numbers in (−1, 1), by a congruential generator (Knuth's MMIX constants).
 pub struct Numbers(u64);

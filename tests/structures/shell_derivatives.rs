@@ -4,8 +4,8 @@ use super::sample::{
     Compared, Numbers, complex_step, distorted_element, motion_numbers, motion_of, random_motion,
     shell_numbers, shell_of,
 };
-use flexbody::math::{Complex64, Dual, Scalar};
-use flexbody::structures::shell::{
+use flexbody_mathematics::math::{Complex64, Dual, Scalar};
+use flexbody_mechanics::structures::shell::{
     MassMoments, Motion, NODES, STRESS_POINTS, Shell, ShellCotangent, Terms,
 };
 

@@ -2,9 +2,9 @@
 //! parallelogram and a curved element, without drilling and correction).
 
 use super::sample::{Numbers, distorted_element, random_motion};
-use flexbody::math::{Dual, Vec3};
-use flexbody::structures::material::Material;
-use flexbody::structures::shell::{
+use flexbody_mathematics::math::{Dual, Vec3};
+use flexbody_mechanics::structures::material::Material;
+use flexbody_mechanics::structures::shell::{
     ElementMatrix, Field, Motion, NODES, RotationAxes, Shell, ShellCotangent, Terms,
 };
 use serde_json::Value;

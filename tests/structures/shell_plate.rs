@@ -6,15 +6,15 @@
 //! 100; for ρ = 50 it is smaller by ln 2 (1/50 − 1/100).
 
 use super::sample::ALUMINIUM;
-use flexbody::math::Vec3;
-use flexbody::structures::functions::{Aggregate, Function, Solved};
-use flexbody::structures::generate::{Generated, plate};
-use flexbody::structures::gradient::gradient;
-use flexbody::structures::loads::Load;
-use flexbody::structures::shell::Terms;
-use flexbody::structures::statics::StaticProblem;
-use flexbody::structures::structure::Structure;
-use flexbody::structures::supports::{NodeUnknowns, Support};
+use flexbody_mathematics::math::Vec3;
+use flexbody_mechanics::structures::functions::{Aggregate, Function, Solved};
+use flexbody_mechanics::structures::generate::{Generated, plate};
+use flexbody_mechanics::structures::gradient::gradient;
+use flexbody_mechanics::structures::loads::Load;
+use flexbody_mechanics::structures::shell::Terms;
+use flexbody_mechanics::structures::statics::StaticProblem;
+use flexbody_mechanics::structures::structure::Structure;
+use flexbody_mechanics::structures::supports::{NodeUnknowns, Support};
 use serde_json::Value;
 
 #[test]

@@ -2,21 +2,21 @@
 //! through statics and modes, against the complex step through generator and solution.
 
 use super::sample::{ALUMINIUM, complex_step};
-use flexbody::math::{Complex64, Dual, Scalar, Vec3};
-use flexbody::structures::beam::Section;
-use flexbody::structures::functions::{Aggregate, Function, Solved};
-use flexbody::structures::generate::{
+use flexbody_mathematics::math::{Complex64, Dual, Scalar, Vec3};
+use flexbody_mechanics::structures::beam::Section;
+use flexbody_mechanics::structures::functions::{Aggregate, Function, Solved};
+use flexbody_mechanics::structures::generate::{
     Generated, GeneratedBeams, Member, curved_beam, curved_panel, cylinder, frame, plate,
     straight_beam,
 };
-use flexbody::structures::gradient::gradient;
-use flexbody::structures::loads::Load;
-use flexbody::structures::mesh::Mesh;
-use flexbody::structures::modes::{ModalProblem, Modes, frequency_gradient, reduced};
-use flexbody::structures::shell::Terms;
-use flexbody::structures::statics::StaticProblem;
-use flexbody::structures::structure::Structure;
-use flexbody::structures::supports::{NodeUnknowns, Support};
+use flexbody_mechanics::structures::gradient::gradient;
+use flexbody_mechanics::structures::loads::Load;
+use flexbody_mechanics::structures::mesh::Mesh;
+use flexbody_mechanics::structures::modes::{ModalProblem, Modes, frequency_gradient, reduced};
+use flexbody_mechanics::structures::shell::Terms;
+use flexbody_mechanics::structures::statics::StaticProblem;
+use flexbody_mechanics::structures::structure::Structure;
+use flexbody_mechanics::structures::supports::{NodeUnknowns, Support};
 
 /// The result of a generator.
 struct Made<S> {

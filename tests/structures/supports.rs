@@ -2,15 +2,15 @@
 //! it no softer, and five and six unknowns a node agree.
 
 use super::sample::{ALUMINIUM, Numbers};
-use flexbody::math::Vec3;
-use flexbody::structures::functions::{Function, Solved};
-use flexbody::structures::generate::{Generated, curved_panel, plate};
-use flexbody::structures::loads::Load;
-use flexbody::structures::modes::ModalProblem;
-use flexbody::structures::shell::Terms;
-use flexbody::structures::statics::StaticProblem;
-use flexbody::structures::structure::Structure;
-use flexbody::structures::supports::{NodeUnknowns, Support};
+use flexbody_mathematics::math::Vec3;
+use flexbody_mechanics::structures::functions::{Function, Solved};
+use flexbody_mechanics::structures::generate::{Generated, curved_panel, plate};
+use flexbody_mechanics::structures::loads::Load;
+use flexbody_mechanics::structures::modes::ModalProblem;
+use flexbody_mechanics::structures::shell::Terms;
+use flexbody_mechanics::structures::statics::StaticProblem;
+use flexbody_mechanics::structures::structure::Structure;
+use flexbody_mechanics::structures::supports::{NodeUnknowns, Support};
 
 const BOTH: [NodeUnknowns; 2] = [NodeUnknowns::Natural, NodeUnknowns::Six];
 const ALL: [bool; 3] = [true; 3];

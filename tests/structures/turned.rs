@@ -1,16 +1,16 @@
 //! Estimated errors by large rotations against exact deflections of bars that bend and do not stretch.
 
 use super::sample::ALUMINIUM;
-use flexbody::math::Vec3;
-use flexbody::structures::Terms;
-use flexbody::structures::beam::Section;
-use flexbody::structures::generate::{Generated, GeneratedBeams, plate, straight_beam};
-use flexbody::structures::loads::Load;
-use flexbody::structures::statics::StaticProblem;
-use flexbody::structures::structure::Structure;
-use flexbody::structures::supports::{NodeUnknowns, Support};
-use flexbody::structures::turned::turned;
-use flexbody::structures::von_karman::LoadSteps;
+use flexbody_mathematics::math::Vec3;
+use flexbody_mechanics::structures::Terms;
+use flexbody_mechanics::structures::beam::Section;
+use flexbody_mechanics::structures::generate::{Generated, GeneratedBeams, plate, straight_beam};
+use flexbody_mechanics::structures::loads::Load;
+use flexbody_mechanics::structures::statics::StaticProblem;
+use flexbody_mechanics::structures::structure::Structure;
+use flexbody_mechanics::structures::supports::{NodeUnknowns, Support};
+use flexbody_mechanics::structures::turned::turned;
+use flexbody_mechanics::structures::von_karman::LoadSteps;
 
 const LENGTH: f64 = 1.0;
 const WIDTH: f64 = 0.2;

@@ -1,13 +1,13 @@
 //! Von Karman statics against closed forms, and loads that a structure cannot carry.
 
 use super::sample::ALUMINIUM;
-use flexbody::math::Vec3;
-use flexbody::structures::generate::{Generated, panel, plate};
-use flexbody::structures::loads::Load;
-use flexbody::structures::statics::{Critical, StaticFailure, StaticProblem};
-use flexbody::structures::structure::Structure;
-use flexbody::structures::supports::{NodeUnknowns, Support};
-use flexbody::structures::von_karman::LoadSteps;
+use flexbody_mathematics::math::Vec3;
+use flexbody_mechanics::structures::generate::{Generated, panel, plate};
+use flexbody_mechanics::structures::loads::Load;
+use flexbody_mechanics::structures::statics::{Critical, StaticFailure, StaticProblem};
+use flexbody_mechanics::structures::structure::Structure;
+use flexbody_mechanics::structures::supports::{NodeUnknowns, Support};
+use flexbody_mechanics::structures::von_karman::LoadSteps;
 
 const NONE: [bool; 3] = [false; 3];
 const LENGTH: f64 = 1.0;

@@ -1,12 +1,12 @@
 //! Steps of an implicit method that resolve a tangent of the motion, too (see `integrate/implicit/tangent.rs`).
 
 use super::Integration;
-use crate::driver::event::{self, Admit};
-use crate::driver::integration::Refresh;
+use crate::event::{self, Admit};
 use crate::functions::Scene;
 use crate::integrate::{
     IntegrationFailure, Limits, Method, Samples, Settings, Spacing, Trajectory, simulate,
 };
+use crate::integration::Refresh;
 use crate::math::Complex64;
 
 /// A motion of more steps than this moves, and its steps resolve its derivatives, too: of rigid scenes, and of flexible
@@ -40,7 +40,7 @@ impl Integration {
     ///
     /// # Errors
     /// If the simulation by these steps fails.
-    pub(in crate::driver) fn resolve_tangent(
+    pub fn resolve_tangent(
         &mut self,
         scene: &mut Scene<f64>,
         run: Trajectory<f64>,

@@ -158,7 +158,7 @@ pub(super) fn each<T: Copy>(values: &[T], ways: &[Way], of: impl Fn(T, Way) -> C
 
 impl Way {
     /// Name for the table.
-    pub(crate) fn name(self) -> String {
+    pub fn name(self) -> String {
         let method = self.method.map_or_else(|| "chosen".into(), Method::name);
         match self.steps {
             Steps::Tolerance(tolerance) => format!("{method} to {tolerance:.0e}"),
@@ -191,7 +191,7 @@ impl Way {
 
 impl Case {
     /// A case with the usual bounds. It conserves energy if its motion is known.
-    pub(crate) fn known(
+    pub fn known(
         (family, extreme): (&'static str, String),
         scene: SceneFile,
         (way, duration): (Way, f64),
@@ -214,7 +214,7 @@ impl Case {
     }
 
     /// Adds a change of the file.
-    pub(crate) fn set(mut self, path: &str, value: impl std::fmt::Display) -> Self {
+    pub fn set(mut self, path: &str, value: impl std::fmt::Display) -> Self {
         self.changes.push(format!("{path}={value}"));
         self
     }
@@ -234,18 +234,18 @@ impl Case {
     }
 
     /// Method and steps for the table.
-    pub(crate) fn method(&self) -> String {
+    pub fn method(&self) -> String {
         self.way
             .map_or_else(|| "as the file says".into(), Way::name)
     }
 
     /// Name by which it can be run alone.
-    pub(crate) fn name(&self) -> String {
+    pub fn name(&self) -> String {
         case_name(self.family, &self.extreme, &self.method())
     }
 
     /// The first `kept` changes of the file, and method, steps and duration.
-    pub(crate) fn overrides(&self, kept: usize) -> Vec<String> {
+    pub fn overrides(&self, kept: usize) -> Vec<String> {
         let mut all: Vec<String> = self.changes.iter().take(kept).cloned().collect();
         if let Some(way) = self.way {
             all.push(format!("/simulation={}", way.json(self.duration)));
@@ -254,7 +254,7 @@ impl Case {
     }
 
     /// The command that runs the case.
-    pub(crate) fn command(&self) -> String {
+    pub fn command(&self) -> String {
         let verb = match self.judge {
             Judge::Exact(_) | Judge::OtherMethod { .. } | Judge::SmallSteps { .. } => "simulate ",
             Judge::Optimum { .. } => "",

@@ -58,7 +58,7 @@ pub(super) struct Numbers {
 
 impl Exact {
     /// Description for the table.
-    pub(crate) fn source(self) -> &'static str {
+    pub fn source(self) -> &'static str {
         match self {
             Exact::DoublePendulum { .. } => "minimal coordinates by extrapolation",
             Exact::SpringPendulum { omega, .. } if omega < SLOW => {
@@ -80,7 +80,7 @@ impl Exact {
     }
 
     /// The correct values, in the order of the functions of the scene.
-    pub(crate) fn numbers(self) -> Numbers {
+    pub fn numbers(self) -> Numbers {
         let (values, size) = match self {
             Exact::DoublePendulum {
                 masses,

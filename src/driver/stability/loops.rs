@@ -258,7 +258,7 @@ pub(super) fn units() -> Vec<Case> {
 
 /// All numbers of a file with a unit and their pointers, with lengths in 1/`length` m and masses in
 /// 1/`mass` kg.
-pub(crate) fn in_units(file: &Value, (length, mass): (f64, f64)) -> Vec<Change> {
+pub fn in_units(file: &Value, (length, mass): (f64, f64)) -> Vec<Change> {
     let mut changes = Vec::new();
     scale("", file, 1.0, (length, mass), &mut changes);
     changes

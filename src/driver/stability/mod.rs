@@ -19,8 +19,7 @@ mod shells;
 
 use crate::report::{StabilityFamily, StabilityOutcome, StabilityRow, StabilityTable};
 use case::Case;
-#[cfg(test)]
-pub(crate) use loops::in_units;
+pub use loops::in_units;
 use std::panic::{AssertUnwindSafe, catch_unwind};
 use std::sync::Mutex;
 use std::sync::atomic::{AtomicUsize, Ordering};
@@ -28,10 +27,10 @@ use std::sync::mpsc;
 use std::time::Duration;
 
 /// Time limit of a case \[s\].
-pub(crate) const LIMIT: f64 = 300.0;
+pub const LIMIT: f64 = 300.0;
 
 /// Names of all cases in the order of the table; `fast` omits those that take seconds.
-pub(crate) fn names(fast: bool) -> Vec<String> {
+pub fn names(fast: bool) -> Vec<String> {
     let wanted = |case: &&Case| !(fast && case.slow);
     let all = cases::all();
     all.iter().filter(wanted).map(Case::name).collect()
@@ -39,7 +38,7 @@ pub(crate) fn names(fast: bool) -> Vec<String> {
 
 /// Runs the cases whose names `wanted` accepts, several in parallel. Calls `seen` for every row as
 /// soon as it is known. The table has its own order.
-pub(crate) fn stability(
+pub fn stability(
     wanted: impl Fn(&str) -> bool,
     seconds: f64,
     seen: &(dyn Fn(&StabilityRow) + Sync),
@@ -80,7 +79,7 @@ pub(crate) fn stability(
 }
 
 /// Whether `only` is a case or the beginning of its name, in whole parts.
-pub(crate) fn is_named(case: &str, only: &str) -> bool {
+pub fn is_named(case: &str, only: &str) -> bool {
     let rest = case.strip_prefix(only.trim_end_matches('/'));
     rest.is_some_and(|rest| rest.is_empty() || rest.starts_with('/'))
 }

@@ -1,14 +1,14 @@
 //! Runs one case and judges what the program reports.
 
 use super::case::{Case, Judge};
-use crate::driver::analysed::Simulated;
-use crate::driver::certificate::{self, certify};
-use crate::driver::check::{CheckedDerivative, check};
-use crate::driver::{KnownEvaluations, Optimisation, Simulation, error, optimise, simulate, start};
+use crate::analysed::Simulated;
+use crate::certificate::{self, certify};
+use crate::check::{CheckedDerivative, check};
 use crate::integrate::{Method, Spacing};
 use crate::optimiser::Status;
 use crate::problem::{Override, Problem};
 use crate::report::{StabilityOutcome, StabilityRow};
+use crate::{KnownEvaluations, Optimisation, Simulation, error, optimise, simulate, start};
 use std::ops::ControlFlow;
 
 /// A reported number indicates an error if it is at least this part of it.

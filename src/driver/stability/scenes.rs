@@ -12,7 +12,7 @@ macro_rules! scene {
             name: concat!($name, ".json"),
             text: include_str!(concat!(
                 env!("CARGO_MANIFEST_DIR"),
-                "/problems/",
+                "/../../problems/",
                 $folder,
                 "/",
                 $name,

@@ -2,8 +2,8 @@
 
 use super::lifted::along;
 use super::{StaticDesign, StaticsFailure};
-use crate::driver::CheckedDerivative;
-use crate::driver::evaluate::Derivative;
+use crate::CheckedDerivative;
+use crate::evaluate::Derivative;
 use crate::problem::Problem;
 use rayon::prelude::*;
 
@@ -11,7 +11,7 @@ use rayon::prelude::*;
 ///
 /// # Errors
 /// [`StaticsFailure`] if a function has no derivative there.
-pub(crate) fn check(
+pub fn check(
     problem: &Problem,
     at: &StaticDesign,
 ) -> Result<Vec<CheckedDerivative>, StaticsFailure> {
@@ -57,7 +57,7 @@ fn size_of(problem: &Problem, at: &StaticDesign, f: usize, gradient: &[Derivativ
 ///
 /// # Errors
 /// [`StaticsFailure`] if a function has no derivative there.
-pub(crate) fn directional(
+pub fn directional(
     problem: &Problem,
     at: &StaticDesign,
     direction: &[f64],

@@ -1,7 +1,7 @@
 //! Exact derivatives of functions of structures in the design variables.
 
 use super::{StaticDesign, StaticsFailure, of_cases, of_modes};
-use crate::driver::evaluate::Derivative;
+use crate::evaluate::Derivative;
 use crate::integrate::WorkCounts;
 use crate::problem::{Asked, Problem};
 use crate::structures::functions::Function;
@@ -63,7 +63,7 @@ impl StaticDesign {
     ///
     /// # Errors
     /// [`StaticsFailure`] if a function has no derivative there.
-    pub(crate) fn derivatives(
+    pub fn derivatives(
         &self,
         problem: &Problem,
         which: &[usize],

@@ -12,7 +12,7 @@
 //! and is subtracted.
 
 use super::{StaticDesign, StaticValue, StaticsFailure};
-use crate::driver::error::{Estimate, FunctionError};
+use crate::error::{Estimate, FunctionError};
 use crate::problem::{Asked, Problem, available_memory};
 use crate::report::size;
 use crate::structures::functions::{Aggregate, Function};
@@ -24,7 +24,7 @@ use std::sync::Arc;
 ///
 /// # Errors
 /// [`StaticsFailure`] if the finer mesh has no solution.
-pub(crate) fn estimate(
+pub fn estimate(
     problem: &Problem,
     at: &StaticDesign,
     which: &[usize],
@@ -92,7 +92,7 @@ fn admit(at: &StaticDesign, available: Option<usize>) -> Result<(), StaticsFailu
 /// Functions whose estimate is unreliable: a force or moment at a point of a shell makes
 /// displacements there grow with the logarithm of the mesh (Naghdi's shells have no finite limit),
 /// and stresses with its inverse.
-pub(crate) fn doubts(problem: &Problem, at: &StaticDesign, which: &[usize]) -> Option<String> {
+pub fn doubts(problem: &Problem, at: &StaticDesign, which: &[usize]) -> Option<String> {
     let mesh = at.statics.mesh();
     let of_shells: HashSet<usize> = mesh.shells.iter().flatten().copied().collect();
     let at_point = |load: &Load<f64>| match load {
@@ -125,7 +125,7 @@ pub(crate) fn doubts(problem: &Problem, at: &StaticDesign, which: &[usize]) -> O
 ///
 /// # Errors
 /// [`StaticsFailure`] if that mesh has no solution.
-pub(crate) fn refined(
+pub fn refined(
     problem: &Problem,
     x: &[f64],
     cuts: usize,
@@ -146,7 +146,7 @@ pub(crate) fn refined(
 }
 
 /// The value on a finer mesh as it would be with as many Gauss points as on the coarse one.
-pub(crate) fn comparable(coarse: &StaticDesign, fine: &StaticDesign, f: usize) -> StaticValue {
+pub fn comparable(coarse: &StaticDesign, fine: &StaticDesign, f: usize) -> StaticValue {
     let mut value = fine.function(f);
     if let Asked::OfSolutions(Function::Stress {
         faces,

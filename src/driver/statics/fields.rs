@@ -2,13 +2,13 @@
 
 use super::StaticDesign;
 use super::figures::{OfCase, of_case, yield_stresses};
-use crate::driver::shell_fields::{name_of_stress, name_of_thickness};
 use crate::math::Vec3;
 use crate::report::vtu::{Fields, vtu};
+use crate::shell_fields::{name_of_stress, name_of_thickness};
 use std::f64::consts::PI;
 
 /// Fields of a design: displacements of each load case, modes, thickness, stresses.
-pub(crate) fn fields(design: &StaticDesign) -> String {
+pub fn fields(design: &StaticDesign) -> String {
     let structure = &design.scene.structure;
     let mesh = &structure.topology.mesh;
     let list = |all: &[Vec3<f64>]| all.iter().map(|v| (*v).into()).collect::<Vec<[f64; 3]>>();

@@ -1,11 +1,11 @@
 //! Pictures of structures: thickness, deformed shape with stress, mode shapes.
 
 use super::StaticDesign;
-use crate::driver::shell_fields::UNKNOWN;
 use crate::math::Vec3;
 use crate::problem::{BeamFibres, Problem, larger};
 use crate::report::History;
 use crate::report::plots::{Camera, StructureView, convergence, structure};
+use crate::shell_fields::UNKNOWN;
 use crate::structures::beam::{BEAM_NODES, Beam};
 use crate::structures::functions::Solved;
 use crate::structures::mesh::Mesh;
@@ -20,7 +20,7 @@ const MOST_CASES: usize = 3;
 const MOST_MODES: usize = 4;
 
 /// The figures of designs, and the history of an optimisation.
-pub(crate) fn figures(
+pub fn figures(
     problem: &Problem,
     designs: &[(&str, &StaticDesign)],
     history: Option<&History>,

@@ -7,7 +7,7 @@ use crate::structures::statics::StaticProblem;
 
 impl StaticDesign {
     /// Modes that were found for some function.
-    pub(crate) fn some_modes(&self) -> Option<&Modes> {
+    pub fn some_modes(&self) -> Option<&Modes> {
         let lowest = self.lowest.iter().flatten().map(|found| &found.modes);
         let all = self.modes.iter().chain(lowest);
         all.max_by_key(|modes| modes.vectors.len())
@@ -21,7 +21,7 @@ impl StaticDesign {
     }
 
     /// Number of unknowns.
-    pub(crate) fn unknowns(&self) -> usize {
+    pub fn unknowns(&self) -> usize {
         let workspace = self.shared();
         workspace
             .statics
@@ -30,7 +30,7 @@ impl StaticDesign {
     }
 
     /// Entries of the factor of the stiffness, if it was made.
-    pub(crate) fn factor_entries(&self) -> Option<usize> {
+    pub fn factor_entries(&self) -> Option<usize> {
         let workspace = self.shared();
         workspace
             .statics

@@ -6,7 +6,7 @@ use crate::structures::turned::{LARGE_ERROR, Turned, turned};
 
 impl StaticDesign {
     /// A warning of the load case whose large rotations spoil its displacements most, if they spoil them much.
-    pub(crate) fn large_rotation(&self) -> Option<String> {
+    pub fn large_rotation(&self) -> Option<String> {
         let all = self.with_solved(|solved| {
             let of = |(case, x): (usize, &Vec<f64>)| -> Option<(f64, Turned, usize)> {
                 if x.is_empty() {

@@ -1,15 +1,15 @@
 //! Structures under load cases at a design: solutions, modes, functions, exact gradients.
 
-pub(crate) mod check;
+pub mod check;
 mod derivatives;
-pub(crate) mod error;
-pub(crate) mod fields;
-pub(crate) mod figures;
+pub mod error;
+pub mod fields;
+pub mod figures;
 mod inspect;
 mod lifted;
 mod limits;
-pub(crate) mod precision;
-pub(crate) mod stages;
+pub mod precision;
+pub mod stages;
 
 use crate::integrate::WorkCounts;
 use crate::math::soft_max::{Smoothed, smoothed};
@@ -27,7 +27,7 @@ use std::sync::{Arc, Mutex, MutexGuard, PoisonError};
 
 /// Why structures have no solution or no gradient at a design.
 #[derive(Clone, Debug, PartialEq, thiserror::Error)]
-pub(crate) enum StaticsFailure {
+pub enum StaticsFailure {
     /// The mesh of this design.
     #[error("the mesh is not sound at this design: {0}")]
     Mesh(#[from] MeshFault),
@@ -67,7 +67,7 @@ pub(crate) enum StaticsFailure {
 
 /// The value of a function.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub(crate) struct StaticValue {
+pub struct StaticValue {
     /// The value.
     pub value: f64,
     /// The largest stress ratio and where it is, of an aggregate of stresses.
@@ -75,7 +75,7 @@ pub(crate) struct StaticValue {
 }
 
 /// Structures at a design with their solutions.
-pub(crate) struct StaticDesign {
+pub struct StaticDesign {
     /// The design.
     pub x: Vec<f64>,
     /// Structures and loads there.
@@ -150,7 +150,7 @@ impl StaticDesign {
     ///
     /// # Errors
     /// [`StaticsFailure`] if the mesh is not sound, a load is not carried, or modes are not found.
-    pub(crate) fn of(
+    pub fn of(
         problem: &Problem,
         statics: &Arc<Statics>,
         x: &[f64],
@@ -299,7 +299,7 @@ impl StaticDesign {
     }
 
     /// Calls `with` with the solutions, as structures know them.
-    pub(crate) fn with_solved<T>(&self, with: impl FnOnce(&Solved<f64>) -> T) -> Option<T> {
+    pub fn with_solved<T>(&self, with: impl FnOnce(&Solved<f64>) -> T) -> Option<T> {
         let workspace = self.shared();
         Some(with(&Solved {
             problem: workspace.statics.as_ref()?,
@@ -341,12 +341,12 @@ impl StaticDesign {
     ///
     /// # Panics
     /// If it was not requested.
-    pub(crate) fn function(&self, f: usize) -> StaticValue {
+    pub fn function(&self, f: usize) -> StaticValue {
         self.values[f].expect("the function was asked for")
     }
 
     /// What a requested function stands for, if it is an aggregate.
-    pub(crate) fn smoothed(&self, f: usize) -> Option<Smoothed> {
+    pub fn smoothed(&self, f: usize) -> Option<Smoothed> {
         let found = self.values[f]?;
         match &self.statics.functions[f] {
             Asked::LowestFrequency(rho) => {

@@ -2,9 +2,9 @@
 
 use super::error::{comparable, refined};
 use super::{StaticDesign, StaticsFailure};
-use crate::driver::work_precision::clock::cpu_seconds;
 use crate::problem::Problem;
 use crate::report::{MeshRow, PrecisionOfMesh};
+use crate::work_precision::clock::cpu_seconds;
 
 /// Largest number of unknowns of the finest mesh.
 const MOST_UNKNOWNS: usize = 60_000;
@@ -16,7 +16,7 @@ const CUTS: [usize; 5] = [1, 2, 3, 4, 6];
 ///
 /// # Errors
 /// [`StaticsFailure`] if a mesh has no solution.
-pub(crate) fn measure(
+pub fn measure(
     problem: &Problem,
     chosen: usize,
     runs: u32,

@@ -7,7 +7,7 @@ use crate::report::page::{Body, Shape, Stage, rounded};
 use crate::report::plots::{Camera, StructureView};
 
 /// The stages of designs.
-pub(crate) fn stages(problem: &Problem, designs: &[(&str, &StaticDesign)]) -> Vec<Stage> {
+pub fn stages(problem: &Problem, designs: &[(&str, &StaticDesign)]) -> Vec<Stage> {
     let [camera, above] = cameras(problem, designs);
     let axes = |camera: Camera| [camera.right, camera.up];
     let view = axes(camera);
@@ -71,6 +71,7 @@ fn stage(views: &[StructureView], view: [[f64; 3]; 2], swings: bool) -> Stage {
             },
         }],
         links: Vec::new(),
+        arrows: Vec::new(),
         paths: Vec::new(),
         view,
         ground: None,

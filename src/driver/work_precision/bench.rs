@@ -3,19 +3,19 @@
 use super::clock::fastest;
 use super::exact::{Reference, distance, gradient_error, positions};
 use crate::adjoint;
-use crate::driver::integration::{Integration, looks_at_the_whole};
-use crate::driver::memory;
-use crate::driver::{Evaluated, Simulation};
 use crate::functions::Scene;
 use crate::integrate::{
     IntegrationFailure, Limits, Method, Samples, Settings, Spacing, Trajectory, simulate,
 };
+use crate::integration::{Integration, looks_at_the_whole};
+use crate::memory;
 use crate::problem::Problem;
 use crate::report::PrecisionRow;
+use crate::{Evaluated, Simulation};
 use std::hint::black_box;
 
 /// The scene that is run repeatedly.
-pub(crate) struct Bench<'a> {
+pub struct Bench<'a> {
     problem: &'a Problem,
     x: &'a [f64],
     /// The scene at the design x.
@@ -25,7 +25,7 @@ pub(crate) struct Bench<'a> {
 
 impl<'a> Bench<'a> {
     /// The scene of `problem` at `x`; gradients are those of `function`.
-    pub(crate) fn new(problem: &'a Problem, x: &'a [f64], function: Option<usize>) -> Self {
+    pub fn new(problem: &'a Problem, x: &'a [f64], function: Option<usize>) -> Self {
         Self {
             scene: problem.scene(x),
             problem,
@@ -35,17 +35,17 @@ impl<'a> Bench<'a> {
     }
 
     /// Limits of a simulation.
-    pub(crate) fn limits(&self) -> Limits {
+    pub fn limits(&self) -> Limits {
         self.problem.simulation.limits.clone()
     }
 
     /// Whether gradients are wanted.
-    pub(crate) fn has_gradient(&self) -> bool {
+    pub fn has_gradient(&self) -> bool {
         self.function.is_some()
     }
 
     /// Whether the function is a sum over the motion, so that its gradient needs samples.
-    pub(crate) fn sums(&self) -> bool {
+    pub fn sums(&self) -> bool {
         self.function
             .is_some_and(|f| looks_at_the_whole(&self.scene.functions[f]))
     }
@@ -54,10 +54,7 @@ impl<'a> Bench<'a> {
     ///
     /// # Errors
     /// The equations of a step are singular.
-    pub(crate) fn gradient(
-        &self,
-        run: Trajectory<f64>,
-    ) -> Result<Option<Vec<f64>>, IntegrationFailure> {
+    pub fn gradient(&self, run: Trajectory<f64>) -> Result<Option<Vec<f64>>, IntegrationFailure> {
         let Some(function) = self.function else {
             return Ok(None);
         };
@@ -69,7 +66,7 @@ impl<'a> Bench<'a> {
     ///
     /// # Errors
     /// A simulation or a gradient fails.
-    pub(crate) fn row(
+    pub fn row(
         &self,
         (method, spacing): (Method, &Spacing),
         reference: &Reference,

@@ -2,7 +2,7 @@
 
 /// CPU time of this process \[s\].
 #[cfg(unix)]
-pub(crate) fn cpu_seconds() -> f64 {
+pub fn cpu_seconds() -> f64 {
     let now = rustix::time::clock_gettime(rustix::time::ClockId::ProcessCPUTime);
     now.tv_sec as f64 + 1e-9 * now.tv_nsec as f64
 }
@@ -24,7 +24,7 @@ const LONG: f64 = 2.0;
 ///
 /// # Errors
 /// The error of the first run that fails.
-pub(crate) fn fastest<E>(runs: usize, mut work: impl FnMut() -> Result<(), E>) -> Result<f64, E> {
+pub fn fastest<E>(runs: usize, mut work: impl FnMut() -> Result<(), E>) -> Result<f64, E> {
     let mut timed = || {
         let start = cpu_seconds();
         work().map(|()| cpu_seconds() - start)

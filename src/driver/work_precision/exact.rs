@@ -4,7 +4,7 @@ use crate::integrate::Trajectory;
 use crate::report::positions::Positions;
 
 /// Final positions and a gradient that count as exact.
-pub(crate) struct Reference {
+pub struct Reference {
     /// Centres of mass at the end, by body \[m\].
     pub positions: Positions,
     /// Gradient of the measured function.
@@ -18,7 +18,7 @@ pub(crate) struct Reference {
 }
 
 /// Centres of mass at the end of a run \[m\].
-pub(crate) fn positions(run: &Trajectory<f64>) -> Vec<[f64; 3]> {
+pub fn positions(run: &Trajectory<f64>) -> Vec<[f64; 3]> {
     let q = run.q(run.last());
     let place = |body: usize| {
         let at = run.numbering.position(body);
@@ -28,7 +28,7 @@ pub(crate) fn positions(run: &Trajectory<f64>) -> Vec<[f64; 3]> {
 }
 
 /// Largest distance of a body from its exact position \[m\]; NaN if a position is NaN.
-pub(crate) fn distance(exact: &[(usize, [f64; 3])], found: &[[f64; 3]]) -> f64 {
+pub fn distance(exact: &[(usize, [f64; 3])], found: &[[f64; 3]]) -> f64 {
     let away = |(body, exact): &(usize, [f64; 3])| -> f64 {
         let found = &found[*body];
         let square: f64 = exact.iter().zip(found).map(|(a, b)| (a - b).powi(2)).sum();
@@ -38,7 +38,7 @@ pub(crate) fn distance(exact: &[(usize, [f64; 3])], found: &[[f64; 3]]) -> f64 {
 }
 
 /// Largest difference of two gradients relative to the largest component of the exact one.
-pub(crate) fn gradient_error(found: &[f64], exact: &[f64]) -> f64 {
+pub fn gradient_error(found: &[f64], exact: &[f64]) -> f64 {
     let size = largest(exact.iter().map(|x| x.abs()));
     largest(exact.iter().zip(found).map(|(a, b)| (a - b).abs())) / size
 }

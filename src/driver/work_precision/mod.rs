@@ -7,7 +7,7 @@
 //! longer decreases.
 
 mod bench;
-pub(crate) mod clock;
+pub mod clock;
 mod exact;
 mod reference;
 
@@ -23,7 +23,7 @@ use exact::Reference;
 
 /// Settings of a measurement.
 #[derive(Clone, Debug, PartialEq)]
-pub(crate) struct Campaign {
+pub struct Campaign {
     /// CPU time of the runs of one method with equal or with adaptive steps \[s\].
     pub seconds: f64,
     /// Number of runs of which the fastest counts.
@@ -49,7 +49,7 @@ const STAGNANT: (f64, f64) = (1e-6, 0.7);
 const DEARER: f64 = 2.0;
 
 /// All methods, adaptive ones first.
-pub(crate) fn methods() -> Vec<Method> {
+pub fn methods() -> Vec<Method> {
     let bdf = |order, start| Method::Bdf { order, start };
     let mut all = vec![
         Method::Dop853,
@@ -66,7 +66,7 @@ pub(crate) fn methods() -> Vec<Method> {
 ///
 /// # Errors
 /// No reference run reaches the end. A method that fails is noted and omitted.
-pub(crate) fn work_precision(
+pub fn work_precision(
     problem: &Problem,
     x: &[f64],
     plan: &Campaign,

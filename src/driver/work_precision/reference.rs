@@ -31,7 +31,7 @@ struct Candidate {
 ///
 /// # Errors
 /// No run reaches the end.
-pub(crate) fn reference(
+pub fn reference(
     bench: &Bench,
     plan: &Campaign,
     stiff: bool,

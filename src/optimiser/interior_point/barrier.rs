@@ -1,9 +1,9 @@
 //! Choice of the barrier parameter.
 
-use crate::optimiser::interior_point::direction::{Direction, NewtonSystem};
-use crate::optimiser::interior_point::iterate::{Iterate, Layout};
-use crate::optimiser::linear::quasi_newton::QuasiNewton;
-use crate::optimiser::options::{Barrier, Options};
+use crate::interior_point::direction::{Direction, NewtonSystem};
+use crate::interior_point::iterate::{Iterate, Layout};
+use crate::linear::quasi_newton::QuasiNewton;
+use crate::options::{Barrier, Options};
 
 /// A barrier subproblem is solved when its residual is below this multiple of μ (Wächter & Biegler 2006,
 /// eq. 7).

@@ -2,9 +2,9 @@
 
 use nalgebra::DVector;
 
-use crate::optimiser::interior_point::iterate::{Iterate, Layout};
-use crate::optimiser::linear::kkt_system::KktSystem;
-use crate::optimiser::linear::quasi_newton::QuasiNewton;
+use crate::interior_point::iterate::{Iterate, Layout};
+use crate::linear::kkt_system::KktSystem;
+use crate::linear::quasi_newton::QuasiNewton;
 
 /// Largest Σ of a slack that counts as far from its bounds. Slacks by their force alone cost 1 to 2 %.
 const FAR: f64 = 1e-8;

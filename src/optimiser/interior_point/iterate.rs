@@ -2,10 +2,10 @@
 
 use nalgebra::{Cholesky, DVector, Dyn};
 
-use crate::optimiser::linear::jacobian::Jacobian;
-use crate::optimiser::linear::kkt_sparse::SparseKkt;
-use crate::optimiser::linear::quasi_newton::Separable;
-use crate::optimiser::program::{Derivatives, Point, Program};
+use crate::linear::jacobian::Jacobian;
+use crate::linear::kkt_sparse::SparseKkt;
+use crate::linear::quasi_newton::Separable;
+use crate::program::{Derivatives, Point, Program};
 
 /// Rows, slacks and bounds of the barrier problem.
 ///

@@ -2,17 +2,17 @@
 
 use nalgebra::DVector;
 
-use crate::optimiser::doubts::wrong_gradients;
-use crate::optimiser::interior_point::barrier::BarrierRule;
-use crate::optimiser::interior_point::direction::{Direction, NewtonSystem};
-use crate::optimiser::interior_point::filter::Filter;
-use crate::optimiser::interior_point::iterate::{Iterate, Layout};
-use crate::optimiser::interior_point::line_search::{Accepted, LineSearch, infeasibility};
-use crate::optimiser::linear::quasi_newton::QuasiNewton;
-use crate::optimiser::multipliers::ScaledMultipliers;
-use crate::optimiser::observer::Phase;
-use crate::optimiser::program::{Derivatives, EarlyExit, Point, Program, Progress};
-use crate::optimiser::status::Status;
+use crate::doubts::wrong_gradients;
+use crate::interior_point::barrier::BarrierRule;
+use crate::interior_point::direction::{Direction, NewtonSystem};
+use crate::interior_point::filter::Filter;
+use crate::interior_point::iterate::{Iterate, Layout};
+use crate::interior_point::line_search::{Accepted, LineSearch, infeasibility};
+use crate::linear::quasi_newton::QuasiNewton;
+use crate::multipliers::ScaledMultipliers;
+use crate::observer::Phase;
+use crate::program::{Derivatives, EarlyExit, Point, Program, Progress};
+use crate::status::Status;
 
 /// Infeasibility below which multipliers of rows are recomputed by least squares. Never to do so costs
 /// 3 % and makes a false claim, always to do so loses three problems of the bed.

@@ -2,11 +2,11 @@
 
 use nalgebra::DVector;
 
-use crate::optimiser::interior_point::direction::{Direction, NewtonSystem};
-use crate::optimiser::interior_point::filter::{Filter, MARGIN, Measure, SLOPE_POWER, THETA_POWER};
-use crate::optimiser::interior_point::iterate::{Iterate, Layout};
-use crate::optimiser::linear::quasi_newton::QuasiNewton;
-use crate::optimiser::program::{Derivatives, EarlyExit, Point, Program};
+use crate::interior_point::direction::{Direction, NewtonSystem};
+use crate::interior_point::filter::{Filter, MARGIN, Measure, SLOPE_POWER, THETA_POWER};
+use crate::interior_point::iterate::{Iterate, Layout};
+use crate::linear::quasi_newton::QuasiNewton;
+use crate::program::{Derivatives, EarlyExit, Point, Program};
 
 /// Longest step, relative to the size of the point. Without it two problems of the bed are lost: a
 /// step to the end of an exponential function.

@@ -2,12 +2,12 @@
 
 use nalgebra::DVector;
 
-use crate::optimiser::interior_point::iterate::Layout;
-use crate::optimiser::interior_point::iteration::InteriorPoint;
-use crate::optimiser::interior_point::line_search::infeasibility;
-use crate::optimiser::program::{EarlyExit, Point, Program};
-use crate::optimiser::status::Status;
-use crate::optimiser::trust_region::steering::{Goal, TrustRegion};
+use crate::interior_point::iterate::Layout;
+use crate::interior_point::iteration::InteriorPoint;
+use crate::interior_point::line_search::infeasibility;
+use crate::program::{EarlyExit, Point, Program};
+use crate::status::Status;
+use crate::trust_region::steering::{Goal, TrustRegion};
 
 impl InteriorPoint {
     /// Handles a line search without a step: forgets the quasi-Newton matrix at a feasible point,

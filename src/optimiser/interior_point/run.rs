@@ -2,14 +2,14 @@
 
 use nalgebra::DVector;
 
-use crate::optimiser::convergence::scaled_residual;
-use crate::optimiser::ending::FinalIterate;
-use crate::optimiser::interior_point::iteration::InteriorPoint;
-use crate::optimiser::multipliers::{ScaledMultipliers, scaled_multipliers};
-use crate::optimiser::options::Method;
-use crate::optimiser::program::{Derivatives, Point, Program};
-use crate::optimiser::renewal::renewed;
-use crate::optimiser::state::SavedState;
+use crate::convergence::scaled_residual;
+use crate::ending::FinalIterate;
+use crate::interior_point::iteration::InteriorPoint;
+use crate::multipliers::{ScaledMultipliers, scaled_multipliers};
+use crate::options::Method;
+use crate::program::{Derivatives, Point, Program};
+use crate::renewal::renewed;
+use crate::state::SavedState;
 
 /// Least relative distance of the start of a resumed run from a bound: so near that it stays where it was.
 pub(crate) const RESUMED_PUSH: f64 = 1e-10;

@@ -1,10 +1,10 @@
 //! The tests of the whole problem at a point of the interior point.
 
-use crate::optimiser::convergence::{LONGEST_DOMINANCE, dominant_row, is_solved};
-use crate::optimiser::interior_point::iteration::InteriorPoint;
-use crate::optimiser::multipliers::ScaledMultipliers;
-use crate::optimiser::program::Program;
-use crate::optimiser::status::Status;
+use crate::convergence::{LONGEST_DOMINANCE, dominant_row, is_solved};
+use crate::interior_point::iteration::InteriorPoint;
+use crate::multipliers::ScaledMultipliers;
+use crate::program::Program;
+use crate::status::Status;
 
 /// After so many evaluations within this distance, relative to the size of the point, a run ends. Without
 /// this, x² ≤ 0 takes 2813 evaluations (608), and far starts end at a limit.

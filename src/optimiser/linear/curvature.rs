@@ -2,7 +2,7 @@
 
 use nalgebra::DVector;
 
-use crate::optimiser::linear::jacobian::Jacobian;
+use crate::linear::jacobian::Jacobian;
 
 /// The second derivatives of the Lagrangian f + yᵀc in a sparse form:
 ///

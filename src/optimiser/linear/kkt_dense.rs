@@ -2,8 +2,8 @@
 
 use nalgebra::{Cholesky, DMatrix, DVector, Dyn};
 
-use crate::optimiser::linear::jacobian::Jacobian;
-use crate::optimiser::linear::quasi_newton::QuasiNewton;
+use crate::linear::jacobian::Jacobian;
+use crate::linear::quasi_newton::QuasiNewton;
 
 /// Relative size of a pivot of the Schur complement below which rows count as dependent.
 /// A tenth makes a false claim.

@@ -4,8 +4,8 @@ use clarabel::algebra::CscMatrix;
 use clarabel::qdldl::{QDLDLFactorisation, QDLDLSettings};
 use nalgebra::{DMatrix, DVector, Dyn, LU};
 
-use crate::optimiser::linear::compact::Compact;
-use crate::optimiser::linear::jacobian::Jacobian;
+use crate::linear::compact::Compact;
+use crate::linear::jacobian::Jacobian;
 
 /// Least D of a row, relative to its entry a S⁻¹ aᵀ of the Schur complement, where S is h and the
 /// stiffness a²/D of inequality rows. Without it the elimination could meet a zero. Iterative

@@ -4,11 +4,11 @@ use std::cmp::Ordering;
 
 use nalgebra::DVector;
 
-use crate::optimiser::linear::curvature::{Curvature, symmetric_product};
-use crate::optimiser::linear::jacobian::Jacobian;
-use crate::optimiser::linear::kkt_dense::DenseKkt;
-use crate::optimiser::linear::kkt_sparse::SparseKkt;
-use crate::optimiser::linear::quasi_newton::QuasiNewton;
+use crate::linear::curvature::{Curvature, symmetric_product};
+use crate::linear::jacobian::Jacobian;
+use crate::linear::kkt_dense::DenseKkt;
+use crate::linear::kkt_sparse::SparseKkt;
+use crate::linear::quasi_newton::QuasiNewton;
 
 /// Residual, relative to the right-hand side, at which refinement ends, and the largest number of
 /// refinements. Two instead of five cost 2 % of the evaluations.

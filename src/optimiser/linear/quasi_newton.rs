@@ -5,8 +5,8 @@ use std::borrow::Cow;
 use nalgebra::{Cholesky, DMatrix, DVector};
 use serde::{Deserialize, Serialize};
 
-use crate::optimiser::linear::compact::Compact;
-use crate::optimiser::linear::curvature::Curvature;
+use crate::linear::compact::Compact;
+use crate::linear::curvature::Curvature;
 
 /// Least cosine of step and gradient difference for which a pair is used: √ε. It does not decide.
 const CURVATURE: f64 = 1.5e-8;

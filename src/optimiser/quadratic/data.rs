@@ -3,8 +3,8 @@
 use clarabel::solver::{DefaultSettings, DefaultSettingsBuilder};
 use nalgebra::{DMatrix, DVector};
 
-use crate::optimiser::linear::jacobian::Jacobian;
-use crate::optimiser::linear::quasi_newton::Spectrum;
+use crate::linear::jacobian::Jacobian;
+use crate::linear::quasi_newton::Spectrum;
 
 /// Tolerance of Clarabel, in scaled units.
 const TOLERANCE: f64 = 1e-10;

@@ -6,11 +6,11 @@ use clarabel::algebra::CscMatrix;
 use clarabel::solver::{DefaultSolver, IPSolver, NonnegativeConeT, SolverStatus};
 use nalgebra::DVector;
 
-use crate::optimiser::linear::jacobian::Jacobian;
-use crate::optimiser::outcome::Counts;
-use crate::optimiser::quadratic::data::{Hessian, QpData, QpStep, settings};
-use crate::optimiser::quadratic::refined::refine;
-use crate::optimiser::quadratic::split;
+use crate::linear::jacobian::Jacobian;
+use crate::outcome::Counts;
+use crate::quadratic::data::{Hessian, QpData, QpStep, settings};
+use crate::quadratic::refined::refine;
+use crate::quadratic::split;
 
 /// A step below this part of its box is lost in the tolerances of Clarabel. Without a second solution the
 /// truss of 200 bars ends at a violation of 1e-13 of the limits.

@@ -3,7 +3,7 @@
 
 use nalgebra::{DMatrix, DVector};
 
-use crate::optimiser::quadratic::data::{Hessian, QpData, QpStep};
+use crate::quadratic::data::{Hessian, QpData, QpStep};
 
 /// Without refinement, the trust region takes 2 to 5 % more evaluations and loses three problems of the
 /// bed.

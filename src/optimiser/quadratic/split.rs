@@ -5,8 +5,8 @@ use clarabel::algebra::CscMatrix;
 use clarabel::solver::{DefaultSolver, IPSolver, NonnegativeConeT, SolverStatus, ZeroConeT};
 use nalgebra::DVector;
 
-use crate::optimiser::linear::quasi_newton::Spectrum;
-use crate::optimiser::quadratic::data::settings;
+use crate::linear::quasi_newton::Spectrum;
+use crate::quadratic::data::settings;
 
 /// Eigenvalues this close to σ, relatively, count as σ: their springs would be stiff beyond measure.
 const SAME: f64 = 1e-6;

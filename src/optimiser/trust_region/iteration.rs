@@ -6,15 +6,15 @@
 
 use nalgebra::DVector;
 
-use crate::optimiser::convergence::{LONGEST_DOMINANCE, dominant_row, is_solved, scaled_residual};
-use crate::optimiser::ending::infeasible;
-use crate::optimiser::linear::quasi_newton::QuasiNewton;
-use crate::optimiser::multipliers::ScaledMultipliers;
-use crate::optimiser::observer::Phase;
-use crate::optimiser::program::{Derivatives, EarlyExit, Point, Program, Progress};
-use crate::optimiser::quadratic::elastic::ElasticQp;
-use crate::optimiser::status::Status;
-use crate::optimiser::trust_region::steering::{Goal, IRREDUCIBLE, Model, TrustRegion};
+use crate::convergence::{LONGEST_DOMINANCE, dominant_row, is_solved, scaled_residual};
+use crate::ending::infeasible;
+use crate::linear::quasi_newton::QuasiNewton;
+use crate::multipliers::ScaledMultipliers;
+use crate::observer::Phase;
+use crate::program::{Derivatives, EarlyExit, Point, Program, Progress};
+use crate::quadratic::elastic::ElasticQp;
+use crate::status::Status;
+use crate::trust_region::steering::{Goal, IRREDUCIBLE, Model, TrustRegion};
 
 /// Share of the predicted reduction for which a step is accepted.
 const ACCEPT: f64 = 1e-4;

@@ -1,13 +1,13 @@
 //! A run of the trust region: phases without the objective, and its final iterate.
 
-use crate::optimiser::ending::FinalIterate;
-use crate::optimiser::multipliers::scaled_multipliers;
-use crate::optimiser::options::Method;
-use crate::optimiser::program::{Derivatives, Point, Program};
-use crate::optimiser::renewal::renewed;
-use crate::optimiser::state::SavedState;
-use crate::optimiser::status::Status;
-use crate::optimiser::trust_region::steering::{Goal, TrustRegion};
+use crate::ending::FinalIterate;
+use crate::multipliers::scaled_multipliers;
+use crate::options::Method;
+use crate::program::{Derivatives, Point, Program};
+use crate::renewal::renewed;
+use crate::state::SavedState;
+use crate::status::Status;
+use crate::trust_region::steering::{Goal, TrustRegion};
 
 pub(crate) fn trust_region(
     program: &mut Program<'_>,

@@ -3,10 +3,10 @@
 
 use nalgebra::{DMatrix, DVector};
 
-use crate::optimiser::linear::quasi_newton::{QuasiNewton, Spectrum};
-use crate::optimiser::program::{Derivatives, Point, Program};
-use crate::optimiser::quadratic::data::{Hessian, QpData, QpStep};
-use crate::optimiser::quadratic::elastic::ElasticQp;
+use crate::linear::quasi_newton::{QuasiNewton, Spectrum};
+use crate::program::{Derivatives, Point, Program};
+use crate::quadratic::data::{Hessian, QpData, QpStep};
+use crate::quadratic::elastic::ElasticQp;
 
 /// Share of the best possible reduction of the linearised violation that a step must reach.
 const STEERING: f64 = 0.1;

@@ -1,13 +1,13 @@
 //! Beams with elastic coordinates.
 
 use super::Checker;
-use crate::problem::beam::{modes, shears};
-use crate::problem::finding::Finding;
-use crate::problem::pointer::{advice, join};
-use crate::problem::quantity::Vector;
-use crate::problem::schema::flexible::{Beam, BeamSection, Functions, Strain};
-use crate::problem::schema::joints::PointPair;
-use crate::problem::schema::mechanics::{Body, Point};
+use crate::beam::{modes, shears};
+use crate::finding::Finding;
+use crate::pointer::{advice, join};
+use crate::quantity::Vector;
+use crate::schema::flexible::{Beam, BeamSection, Functions, Strain};
+use crate::schema::joints::PointPair;
+use crate::schema::mechanics::{Body, Point};
 
 /// Part of the length by which a point may lie beyond an end.
 const BEYOND: f64 = 1e-9;

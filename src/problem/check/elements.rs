@@ -1,18 +1,18 @@
 //! Bodies of finite elements.
 
 use super::Checker;
-use crate::problem::elements::{frame_nodes, prepare};
-use crate::problem::finding::Finding;
-use crate::problem::holds::nodes_of;
-use crate::problem::parts::beams;
-use crate::problem::placement::GROUND;
-use crate::problem::pointer::{advice, join, keys};
-use crate::problem::schema::Objective;
-use crate::problem::schema::elements::{ElementBasis, ElementFrame, Elements, Held};
-use crate::problem::schema::functions::ShellStress;
-use crate::problem::schema::mechanics::Body;
-use crate::problem::schema::structures::Structure;
-use crate::problem::statics::mesh::part;
+use crate::elements::{frame_nodes, prepare};
+use crate::finding::Finding;
+use crate::holds::nodes_of;
+use crate::parts::beams;
+use crate::placement::GROUND;
+use crate::pointer::{advice, join, keys};
+use crate::schema::Objective;
+use crate::schema::elements::{ElementBasis, ElementFrame, Elements, Held};
+use crate::schema::functions::ShellStress;
+use crate::schema::mechanics::Body;
+use crate::schema::structures::Structure;
+use crate::statics::mesh::part;
 use crate::structures::floating::{FrameNodes, is_straight, spans};
 use crate::structures::mesh::Mesh;
 use crate::structures::quality::{faults, orientation_faults};

@@ -1,13 +1,13 @@
 //! Joints and drives.
 
 use super::Checker;
+use crate::finding::Finding;
+use crate::joints::holds_points;
 use crate::model::{DegreeOfFreedom, JointKind};
-use crate::problem::finding::Finding;
-use crate::problem::joints::holds_points;
-use crate::problem::pointer::join;
-use crate::problem::schema::drives::TimeFunction;
-use crate::problem::schema::joints::{Axis, Ends, Joint, JointPlace, JointStart, PointPair};
-use crate::problem::schema::mechanics::{Body, Shape};
+use crate::pointer::join;
+use crate::schema::drives::TimeFunction;
+use crate::schema::joints::{Axis, Ends, Joint, JointPlace, JointStart, PointPair};
+use crate::schema::mechanics::{Body, Shape};
 
 impl Checker<'_> {
     pub(super) fn joints(&mut self) {

@@ -2,11 +2,11 @@
 
 use super::Checker;
 use super::sets::Kind;
-use crate::problem::finding::Finding;
-use crate::problem::pointer::{advice, join};
-use crate::problem::schema::functions::Function;
-use crate::problem::schema::statics::{CaseLoad, Stress};
-use crate::problem::schema::structures::{Material, Structure, Thickness};
+use crate::finding::Finding;
+use crate::pointer::{advice, join};
+use crate::schema::functions::Function;
+use crate::schema::statics::{CaseLoad, Stress};
+use crate::schema::structures::{Material, Structure, Thickness};
 use std::collections::BTreeSet;
 
 impl Checker<'_> {

@@ -1,15 +1,15 @@
 //! Loads.
 
 use super::Checker;
+use crate::finding::Finding;
+use crate::loads::named;
 use crate::model::JointKind;
-use crate::problem::finding::Finding;
-use crate::problem::loads::named;
-use crate::problem::placement::GROUND;
-use crate::problem::pointer::{advice, join};
-use crate::problem::quantity::Quantity;
-use crate::problem::schema::joints::Ends;
-use crate::problem::schema::loads::{Load, Motion, TimeFunction};
-use crate::problem::schema::measured::JointReaction;
+use crate::placement::GROUND;
+use crate::pointer::{advice, join};
+use crate::quantity::Quantity;
+use crate::schema::joints::Ends;
+use crate::schema::loads::{Load, Motion, TimeFunction};
+use crate::schema::measured::JointReaction;
 
 impl Checker<'_> {
     pub(super) fn loads(&mut self) {

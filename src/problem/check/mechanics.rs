@@ -1,12 +1,12 @@
 //! Bodies and placements.
 
 use super::Checker;
-use crate::problem::finding::Finding;
-use crate::problem::mass::{mass_properties, volume};
-use crate::problem::placement::{GROUND, placement_order};
-use crate::problem::pointer::join;
-use crate::problem::schema::flexible::Start;
-use crate::problem::schema::mechanics::{Body, Location, Place, Shape, Turns};
+use crate::finding::Finding;
+use crate::mass::{mass_properties, volume};
+use crate::placement::{GROUND, placement_order};
+use crate::pointer::join;
+use crate::schema::flexible::Start;
+use crate::schema::mechanics::{Body, Location, Place, Shape, Turns};
 
 impl Checker<'_> {
     pub(super) fn mechanics(&mut self) {

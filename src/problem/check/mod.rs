@@ -17,9 +17,9 @@ use super::finding::Finding;
 use super::placement::{GROUND, split_location};
 use super::pointer::{advice, join};
 use super::prune::Damage;
-use super::quantity::{Vector, values};
-use super::schema::Document;
-use super::schema::mechanics::{Body, Point};
+use crate::quantity::{Vector, values};
+use crate::schema::Document;
+use crate::schema::mechanics::{Body, Point};
 
 /// All faults of a document. Damaged parts are not checked.
 pub(super) fn check(document: &Document, damage: &Damage) -> Vec<Finding> {

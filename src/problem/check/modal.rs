@@ -1,10 +1,10 @@
 //! Bodies from files of other codes: conditions before and after the files are read.
 
 use super::Checker;
-use crate::problem::finding::Finding;
-use crate::problem::pointer::{advice, join};
-use crate::problem::schema::mechanics::Body;
-use crate::problem::schema::modal::{Modal, ModalFrame, Source};
+use crate::finding::Finding;
+use crate::pointer::{advice, join};
+use crate::schema::mechanics::Body;
+use crate::schema::modal::{Modal, ModalFrame, Source};
 
 impl Checker<'_> {
     pub(super) fn modal(&mut self, pointer: &str, body: &Body, modal: &Modal) {

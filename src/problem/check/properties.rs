@@ -1,12 +1,12 @@
 //! Cross sections and inertias, of moving bodies and of structures.
 
 use super::Checker;
+use crate::finding::Finding;
 use crate::math::Mat3;
 use crate::model::rigid_body::is_inertia_of_solid;
-use crate::problem::finding::Finding;
-use crate::problem::pointer::join;
-use crate::problem::schema::section::Section;
-use crate::problem::section::section;
+use crate::pointer::join;
+use crate::schema::section::Section;
+use crate::section::section;
 use crate::structures::beam::SectionValues;
 
 impl Checker<'_> {

@@ -1,15 +1,15 @@
 //! What is measured of sections of beams, by functions or by elements.
 
 use super::Checker;
-use crate::problem::elements::prepared;
-use crate::problem::finding::Finding;
-use crate::problem::flexible::{END, START};
-use crate::problem::parts::chosen;
-use crate::problem::pointer::{advice, join};
-use crate::problem::schema::elements::Elements;
-use crate::problem::schema::flexible::BeamSection;
-use crate::problem::schema::measured::{SectionPlace, SectionPlaces};
-use crate::problem::schema::structures::{Mesh, Section};
+use crate::elements::prepared;
+use crate::finding::Finding;
+use crate::flexible::{END, START};
+use crate::parts::chosen;
+use crate::pointer::{advice, join};
+use crate::schema::elements::Elements;
+use crate::schema::flexible::BeamSection;
+use crate::schema::measured::{SectionPlace, SectionPlaces};
+use crate::schema::structures::{Mesh, Section};
 
 /// Largest number of sections at equal distances.
 const MOST_SECTIONS: usize = 1000;

@@ -1,10 +1,10 @@
 //! Sets of nodes, edges and elements: their names, and that they are not empty.
 
 use super::Checker;
-use crate::problem::finding::Finding;
-use crate::problem::pointer::{advice, join};
-use crate::problem::schema::structures::{Mesh, Set, Structure, Thickness};
-use crate::problem::statics::mesh::{element_count, generated};
+use crate::finding::Finding;
+use crate::pointer::{advice, join};
+use crate::schema::structures::{Mesh, Set, Structure, Thickness};
+use crate::statics::mesh::{element_count, generated};
 use std::collections::{BTreeMap, BTreeSet};
 
 /// Name of the set of everything.

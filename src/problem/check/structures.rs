@@ -2,15 +2,13 @@
 
 use super::Checker;
 use super::sets::{Kind, Sets};
+use crate::finding::Finding;
 use crate::math::Mat3;
-use crate::problem::finding::Finding;
-use crate::problem::pointer::{advice, join};
-use crate::problem::quantity::Quantity;
-use crate::problem::schema::structures::{
-    Mesh, Per, Structure, Thickness, VariedSection, VariedThickness,
-};
-use crate::problem::statics::expand::{section_count, thickness_count};
-use crate::problem::statics::mesh::{element_count, panel_elements, part};
+use crate::pointer::{advice, join};
+use crate::quantity::Quantity;
+use crate::schema::structures::{Mesh, Per, Structure, Thickness, VariedSection, VariedThickness};
+use crate::statics::expand::{section_count, thickness_count};
+use crate::statics::mesh::{element_count, part};
 
 /// Largest number of elements of a structure.
 const MOST_ELEMENTS: usize = 200_000;
@@ -303,7 +301,7 @@ impl Checker<'_> {
                 self.fault(Finding::new(pointer, found, expected).of_key());
             }
         }
-        if let Some([nx, ny]) = panel_elements(&structure.mesh) {
+        if let Some([nx, ny]) = structure.mesh.panel_elements() {
             let [px, py] = of.patches.unwrap_or([1, 1]);
             if !nx.is_multiple_of(px) || !ny.is_multiple_of(py) {
                 let found = format!("{px} × {py} patches of {nx} × {ny} elements");
@@ -312,7 +310,7 @@ impl Checker<'_> {
             }
             if let Some(bands) = of.bands {
                 let count = match of.along {
-                    Some(crate::problem::schema::structures::Direction::X) => nx,
+                    Some(crate::schema::structures::Direction::X) => nx,
                     _ => ny,
                 };
                 if !count.is_multiple_of(bands) {
@@ -378,12 +376,5 @@ impl Checker<'_> {
                 self.fault(Finding::new(pointer, found, "one of them").of_key());
             }
         }
-    }
-}
-
-impl Mesh {
-    /// Whether it has beams, and not shells.
-    pub(crate) fn is_of_beams(&self) -> bool {
-        panel_elements(self).is_none()
     }
 }

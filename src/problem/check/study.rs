@@ -1,20 +1,18 @@
 //! Functions, objective, constraints, and settings of solution and plot.
 
 use super::Checker;
+use crate::elements::has_all_nodes;
+use crate::finding::Finding;
 use crate::math::Vec3;
 use crate::model::JointKind;
-use crate::problem::elements::has_all_nodes;
-use crate::problem::finding::Finding;
-use crate::problem::functions::released;
-use crate::problem::placement::GROUND;
-use crate::problem::pointer::{advice, join};
-use crate::problem::quantity::values;
-use crate::problem::scene::GRAVITY;
-use crate::problem::schema::functions::{
-    Clearance, Component, Function, Gate, Instant, OfMotion, Range,
-};
-use crate::problem::schema::mechanics::Point;
-use crate::problem::schema::{LinearSolver, Method, Objective};
+use crate::placement::GROUND;
+use crate::pointer::{advice, join};
+use crate::quantities::released;
+use crate::quantity::values;
+use crate::scene::GRAVITY;
+use crate::schema::functions::{Clearance, Component, Function, Gate, Instant, OfMotion, Range};
+use crate::schema::mechanics::Point;
+use crate::schema::{LinearSolver, Method, Objective};
 
 /// A direction is horizontal up to this cosine with gravity.
 const HORIZONTAL: f64 = 1e-9;

@@ -1,18 +1,18 @@
 //! Text about the flexible bodies of a document: coordinates and natural frequencies.
 
-use crate::problem::schema::Document;
-use crate::problem::schema::elements::ElementInertia;
-use crate::problem::schema::flexible::Beam;
-use crate::problem::{beam, elements, modal};
+use crate::schema::Document;
+use crate::schema::elements::ElementInertia;
+use crate::schema::flexible::Beam;
 use crate::structures::modal::FlexibleBeam;
 use crate::structures::modal::frequencies::{Held, frequencies};
 use crate::system::reduction::ReducedBasis;
+use crate::{beam, elements, modal};
 
 /// Largest number of natural frequencies of a body in the text.
 const TOLD: usize = 4;
 
 /// Coordinates and natural frequencies of the flexible bodies of a document.
-pub(crate) fn described(document: &Document, x: &[f64]) -> Vec<String> {
+pub fn described(document: &Document, x: &[f64]) -> Vec<String> {
     let told = |held, beam: &FlexibleBeam<f64>| {
         let all = frequencies(&beam.numbers(), held)?;
         let told = all.iter().take(TOLD).map(|f| format!("{f:.4e}"));

@@ -7,10 +7,10 @@ use crate::functions::{Bound, Instant};
 use crate::math::scalar::lift3;
 use crate::math::{Scalar, Vec3};
 use crate::model::flexible::Quadratic;
-use crate::problem::parts::line_of;
-use crate::problem::placement::Assembly;
-use crate::problem::schema::Document;
-use crate::problem::schema::measured::{
+use crate::parts::line_of;
+use crate::placement::Assembly;
+use crate::schema::Document;
+use crate::schema::measured::{
     Bound as Side, LargestFibreStress, LargestSectionForce, SectionComponent, SectionPlace,
     SectionPlaces, Sign,
 };
@@ -29,13 +29,13 @@ impl<S: Scalar> FlexibleBodies<S> {
     }
 
     /// Its index among the flexible bodies of the model.
-    pub(crate) fn index(&self, body: usize) -> usize {
+    pub fn index(&self, body: usize) -> usize {
         let shells = self.shells_of(body).map(|shells| shells.flexible);
         shells.unwrap_or_else(|| self.of(body).flexible)
     }
 
     /// Aggregate of the stress of a set of shells, or of all of a body.
-    pub(crate) fn shell_stress(&self, body: usize, set: Option<&String>, rho: f64) -> Instant<S> {
+    pub fn shell_stress(&self, body: usize, set: Option<&String>, rho: f64) -> Instant<S> {
         let shells = self.shells_of(body);
         let shells = shells.expect("a stress of shells is of such a body, which is checked");
         let all = || (0..shells.prepared.mesh.elements.len()).collect();
@@ -48,12 +48,7 @@ impl<S: Scalar> FlexibleBodies<S> {
 
     /// The displacement of a point from where it is in the undeformed body, along a direction in the
     /// body's axes.
-    pub(crate) fn displacement(
-        &self,
-        body: usize,
-        point: Vec3<S>,
-        direction: Vec3<S>,
-    ) -> Instant<S> {
+    pub fn displacement(&self, body: usize, point: Vec3<S>, direction: Vec3<S>) -> Instant<S> {
         if let Some(shells) = self.shells_of(body) {
             let mut linear = vec![S::zero(); shells.prepared.coordinates()];
             if let Some((_, motion)) = shells.at(&point) {
@@ -80,7 +75,7 @@ impl<S: Scalar> FlexibleBodies<S> {
     }
 
     /// The sections of a beam, or of beams of a body of elements: `set` of them, or all.
-    pub(crate) fn sections(
+    pub fn sections(
         &self,
         document: &Document,
         (name, body): (&str, usize),
@@ -98,7 +93,7 @@ impl<S: Scalar> FlexibleBodies<S> {
 }
 
 /// The sections of a beam whose forces and stresses are measured.
-pub(crate) enum Sections<'a, S> {
+pub enum Sections<'a, S> {
     /// Of a beam with functions.
     OfBeam(&'a Elastic<S>),
     /// Of beams among the elements of a flexible body, an index into those of the model.
@@ -107,7 +102,7 @@ pub(crate) enum Sections<'a, S> {
 
 impl<S: Scalar> Sections<'_, S> {
     /// A section force or moment.
-    pub(crate) fn force(&self, component: SectionComponent, station: S) -> Instant<S> {
+    pub fn force(&self, component: SectionComponent, station: S) -> Instant<S> {
         use DeformationKind::{Force, Moment};
         // N, V2, V3, T, M2, M3 of elements, whose y and z are axes 2 and 3 of the section.
         let (force, number, kind) = match component {
@@ -131,7 +126,7 @@ impl<S: Scalar> Sections<'_, S> {
     }
 
     /// The stress along a fibre, at parts of half the section's size.
-    pub(crate) fn stress(&self, station: S, fibre: [f64; 2]) -> Instant<S> {
+    pub fn stress(&self, station: S, fibre: [f64; 2]) -> Instant<S> {
         let kind = DeformationKind::Stress;
         match self {
             Self::OfBeam(own) => {
@@ -158,13 +153,13 @@ impl<S: Scalar> Sections<'_, S> {
     }
 
     /// The largest section force or moment of several sections.
-    pub(crate) fn largest_force(&self, of: &LargestSectionForce, stations: &[S]) -> Instant<S> {
+    pub fn largest_force(&self, of: &LargestSectionForce, stations: &[S]) -> Instant<S> {
         let all = stations.iter().map(|&at| self.force(of.component, at));
         largest(all, (of.sign, of.rho, of.bound))
     }
 
     /// The largest stress of several sections and fibres.
-    pub(crate) fn largest_stress(&self, of: &LargestFibreStress, stations: &[S]) -> Instant<S> {
+    pub fn largest_stress(&self, of: &LargestFibreStress, stations: &[S]) -> Instant<S> {
         let at = |&station: &S| {
             let fibres = of.fibres.as_deref().unwrap_or(self.outer(station));
             fibres.iter().map(move |&fibre| self.stress(station, fibre))
@@ -196,8 +191,8 @@ fn of_unknowns<S>(
 }
 
 /// The named sections of a line of elements.
-pub(crate) const START: &str = "start";
-pub(crate) const END: &str = "end";
+pub const START: &str = "start";
+pub const END: &str = "end";
 
 /// The outermost fibres of a rectangle and of an I.
 const CORNERS: [[f64; 2]; 4] = [[1.0, 1.0], [1.0, -1.0], [-1.0, 1.0], [-1.0, -1.0]];
@@ -217,7 +212,7 @@ const ROUND: [[f64; 2]; 8] = {
 };
 
 /// The outer fibres of a section, round or not, in parts of half its size.
-pub(crate) fn outer_fibres(round: bool) -> &'static [[f64; 2]] {
+pub fn outer_fibres(round: bool) -> &'static [[f64; 2]] {
     if round { &ROUND } else { &CORNERS }
 }
 
@@ -262,7 +257,7 @@ fn largest<S: Scalar>(
 }
 
 /// Where several sections are, as fractions of the length.
-pub(crate) fn stations<S: Scalar>(
+pub fn stations<S: Scalar>(
     document: &Document,
     assembly: &Assembly<S>,
     body: &str,
@@ -281,7 +276,7 @@ pub(crate) fn stations<S: Scalar>(
 }
 
 /// Where a section is, as a fraction of the length.
-pub(crate) fn station<S: Scalar>(
+pub fn station<S: Scalar>(
     document: &Document,
     assembly: &Assembly<S>,
     body: &str,

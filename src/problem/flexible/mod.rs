@@ -5,15 +5,11 @@ mod described;
 mod measures;
 mod shapes;
 
-pub(crate) use described::described;
-pub(crate) use measures::{END, START, Sections, outer_fibres, station, stations};
+pub use described::described;
+pub use measures::{END, START, Sections, outer_fibres, station, stations};
 
 use super::elements;
 use super::placement::Assembly;
-use super::prepared::Prepared;
-use super::schema::Document;
-use super::schema::elements::ElementInertia;
-use super::schema::loads::Load;
 use crate::functions::{Function, TerminalEvent};
 use crate::math::scalar::lift3;
 use crate::math::{Scalar, Vec3};
@@ -21,12 +17,16 @@ use crate::model::finite::FiniteElements;
 use crate::model::flexible::Modes;
 use crate::model::flexible::{Form, Inertia, Modal};
 use crate::model::{ConstraintRow, JointFrame, LoadKind, Model};
+use crate::prepared::Prepared;
+use crate::schema::Document;
+use crate::schema::elements::ElementInertia;
+use crate::schema::loads::Load;
 use crate::structures::floating::{NodeMotion, PointMotion};
 use shapes::{Shapes, Weighed, start, weighed};
 use std::sync::Arc;
 
 /// A body with elastic coordinates.
-pub(crate) struct Elastic<S> {
+pub struct Elastic<S> {
     /// The body that is its frame.
     frame: usize,
     /// Its index among those of the model.
@@ -68,7 +68,7 @@ struct Interface<S> {
 
 /// What holds a point of a body, by its number in the document.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub(crate) enum Holder {
+pub enum Holder {
     Joint(usize),
     Load(usize),
     Function(usize),
@@ -77,7 +77,7 @@ pub(crate) enum Holder {
 
 /// A place that something holds on a flexible body.
 #[derive(Clone, Debug)]
-pub(crate) struct HeldPlace<S> {
+pub struct HeldPlace<S> {
     pub holder: Holder,
     /// The body.
     pub body: usize,
@@ -86,16 +86,16 @@ pub(crate) struct HeldPlace<S> {
 }
 
 /// The bodies with elastic coordinates of a scene.
-pub(crate) struct FlexibleBodies<S> {
+pub struct FlexibleBodies<S> {
     bodies: Vec<Elastic<S>>,
     shells: Vec<Shells>,
     interfaces: Vec<Interface<S>>,
     /// The places that joints, loads and functions hold.
-    pub(crate) places: Vec<HeldPlace<S>>,
+    pub places: Vec<HeldPlace<S>>,
 }
 
 /// The numbers of the flexible bodies of a document, each kind in the order of the bodies.
-pub(crate) struct Numbers<S> {
+pub struct Numbers<S> {
     /// Beams and bodies of files.
     shapes: Vec<Weighed<S>>,
     finite: Vec<FiniteElements<S>>,
@@ -142,7 +142,7 @@ fn tie<S: Scalar>(
 
 impl<S: Scalar> FlexibleBodies<S> {
     /// The numbers of the flexible bodies of a document; gives their frames mass and inertia.
-    pub(crate) fn weigh(document: &Document, model: &mut Model<S>, x: &[S]) -> Numbers<S> {
+    pub fn weigh(document: &Document, model: &mut Model<S>, x: &[S]) -> Numbers<S> {
         let (mut shapes, mut finite) = (Vec::new(), Vec::new());
         for (own, body) in model.bodies.iter_mut().zip(document.bodies.values()) {
             if let Some(elements) = &body.elements {
@@ -159,7 +159,7 @@ impl<S: Scalar> FlexibleBodies<S> {
 
     /// Gives the flexible bodies of a document their elastic coordinates, and moves joints and loads from them to
     /// their points. The bodies of `model` are at their start.
-    pub(crate) fn add(
+    pub fn add(
         document: &Document,
         assembly: &Assembly<S>,
         model: &mut Model<S>,
@@ -378,7 +378,7 @@ impl<S: Scalar> FlexibleBodies<S> {
     }
 
     /// Moves the points that functions observe to the points of these bodies.
-    pub(crate) fn move_functions(
+    pub fn move_functions(
         &mut self,
         model: &mut Model<S>,
         functions: &mut [Function<S>],

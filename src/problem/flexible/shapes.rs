@@ -2,14 +2,14 @@
 
 use crate::math::{Scalar, Vec3};
 use crate::model::flexible::BeamSection;
-use crate::problem::schema::mechanics::Body;
-use crate::problem::{beam, modal};
+use crate::schema::mechanics::Body;
 use crate::structures::modal::loaded::Loaded;
 use crate::structures::modal::{FlexibleBeam, ModalNumbers, PointModes};
+use crate::{beam, modal};
 use std::sync::Arc;
 
 /// How points of a body move with its elastic coordinates.
-pub(crate) enum Shapes<S> {
+pub enum Shapes<S> {
     Beam(FlexibleBeam<S>),
     /// A body of files, and the factor of its lengths.
     Modal(Arc<Loaded>, S),
@@ -60,4 +60,4 @@ pub(super) fn start<S: Scalar>(body: &Body, count: usize, x: &[S]) -> [Vec<S>; 2
 }
 
 /// The shapes of a body and its numbers.
-pub(crate) type Weighed<S> = (Shapes<S>, ModalNumbers<S>);
+pub type Weighed<S> = (Shapes<S>, ModalNumbers<S>);

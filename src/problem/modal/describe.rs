@@ -1,7 +1,7 @@
 //! Text about bodies from files: their coordinates and natural frequencies.
 
 use super::numbers::numbers;
-use crate::problem::schema::modal::Modal;
+use crate::schema::modal::Modal;
 use crate::structures::modal::frequencies::{Held, frequencies};
 use crate::structures::modal::interfaces::Holding;
 use crate::structures::modal::loaded::{Loaded, Reduced};
@@ -14,7 +14,7 @@ const TOLD: usize = 6;
 const TOLD_UNCERTAIN: f64 = 1e-4;
 
 /// A body in words. Its sentence on the free body needs the modes of the full matrices.
-pub(in crate::problem) fn described(name: &str, modal: &Modal, x: &[f64]) -> String {
+pub fn described(name: &str, modal: &Modal, x: &[f64]) -> String {
     let Some(loaded) = &modal.loaded else {
         return format!("body \"{name}\": its files are not read");
     };
@@ -113,7 +113,7 @@ fn coordinates(reduced: &Reduced, count: usize) -> String {
 
 /// Factor of the frequencies by the factors of the design: √(E/ρ)/s.
 fn factor(modal: &Modal, x: &[f64]) -> f64 {
-    let or = |q: Option<crate::problem::quantity::Quantity>| q.map_or(1.0, |q| q.get(x));
+    let or = |q: Option<crate::quantity::Quantity>| q.map_or(1.0, |q| q.get(x));
     (or(modal.young_factor) / or(modal.density_factor)).sqrt() / or(modal.scale)
 }
 

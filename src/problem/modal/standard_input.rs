@@ -2,72 +2,15 @@
 
 use super::text::TextFault;
 use crate::math::{Mat3, Vec3};
-use crate::problem::source::Source;
-use crate::problem::structure::walk;
+use crate::schema::standard_input::{Square, StandardInput, Triple};
+use crate::source::Source;
+use crate::structure::walk;
 use crate::structures::modal::imported::{ImportedBody, ImportedPoint};
-use indexmap::IndexMap;
 use nalgebra::DMatrix;
-use schemars::JsonSchema;
-use serde::Deserialize;
 use serde_json::Value;
 
 /// Difference of entries of a symmetric matrix, relative to its largest entry.
 const SYMMETRIC: f64 = 1e-9;
-
-/// A vector and a 3 × 3 matrix by rows.
-type Triple = [f64; 3];
-type Square = [[f64; 3]; 3];
-
-/// A body whose point X is at X + Σ q_I X_I(X) in its axes.
-#[derive(Clone, Debug, Deserialize, JsonSchema)]
-#[serde(deny_unknown_fields)]
-struct StandardInput {
-    /// Version of the format, 1.
-    #[schemars(extend("const" = 1))]
-    #[allow(dead_code)]
-    version: u32,
-    /// ∫ dm.
-    #[schemars(extend("unit" = "kg", "exclusiveMinimum" = 0))]
-    mass: f64,
-    /// ∫ X dm / mass.
-    #[schemars(extend("unit" = "m"))]
-    centre_of_mass: Triple,
-    /// Inertia of the undeformed body about the origin of its axes, by rows.
-    #[schemars(extend("unit" = "kg m²"))]
-    inertia: Square,
-    /// By mode: p_I = ∫ X_I dm.
-    #[schemars(extend("unit" = "kg m"))]
-    static_moments: Vec<Triple>,
-    /// By mode: S_0I = ∫ X X_Iᵀ dm, by rows.
-    #[schemars(extend("unit" = "kg m²"))]
-    with_position: Vec<Square>,
-    /// By mode I: S_IJ = ∫ X_I X_Jᵀ dm, by rows, for J = I and all later modes.
-    #[schemars(extend("unit" = "kg m²"))]
-    products: Vec<Vec<Square>>,
-    /// Stiffness matrix, by rows.
-    #[schemars(extend("unit" = "N/m"))]
-    stiffness: Vec<Vec<f64>>,
-    /// Damping matrix, by rows, default 0.
-    #[schemars(extend("unit" = "N s/m"))]
-    damping: Option<Vec<Vec<f64>>>,
-    /// Points that joints, loads and functions can hold.
-    points: IndexMap<String, StandardPoint>,
-}
-
-/// A point of the body.
-#[derive(Clone, Debug, Deserialize, JsonSchema)]
-#[serde(deny_unknown_fields)]
-struct StandardPoint {
-    /// Where it is in the undeformed body.
-    #[schemars(extend("unit" = "m"))]
-    position: Triple,
-    /// By mode: its displacement.
-    #[schemars(extend("unit" = "1"))]
-    displacement: Vec<Triple>,
-    /// By mode: its rotation; none if it is not known, then only forces act there.
-    #[schemars(extend("unit" = "1/m"))]
-    rotation: Option<Vec<Triple>>,
-}
 
 /// Reads a file.
 pub(super) fn read(text: &str) -> Result<ImportedBody, TextFault> {
@@ -85,7 +28,7 @@ pub(super) fn read(text: &str) -> Result<ImportedBody, TextFault> {
         )
     })?;
     let source = Source::index(text);
-    let schema = schemars::schema_for!(StandardInput).to_value();
+    let schema = StandardInput::schema();
     let found = walk(&value, &schema).findings.into_iter().next();
     if let Some(found) = found {
         let at = source.value(&found.pointer).unwrap_or(0..1);
@@ -97,8 +40,8 @@ pub(super) fn read(text: &str) -> Result<ImportedBody, TextFault> {
             hint: found.hint,
         });
     }
-    let input: StandardInput = serde_json::from_value(value)
-        .map_err(|error| TextFault::new(0..1, error.to_string(), "standard input data"))?;
+    let input = StandardInput::read(value)
+        .map_err(|error| TextFault::new(0..1, error, "standard input data"))?;
     let fault = |pointer: &str, found: String, expected: &str| {
         let at = source.value(pointer).unwrap_or(0..1);
         TextFault::new(at, found, expected)
@@ -124,7 +67,7 @@ pub(super) fn read(text: &str) -> Result<ImportedBody, TextFault> {
         count(&format!("/products/{i}"), row.len(), m - i)?;
     }
     for (name, point) in &input.points {
-        let pointer = crate::problem::pointer::join("/points", name);
+        let pointer = crate::pointer::join("/points", name);
         count(
             &format!("{pointer}/displacement"),
             point.displacement.len(),

@@ -1,16 +1,19 @@
 //! A variable of a property that differs by element, band, patch or group stands for one variable each.
 
-use super::mesh::{element_count, panel_elements};
-use crate::problem::Variable;
-use crate::problem::finding::Finding;
-use crate::problem::pointer::{join, keys};
-use crate::problem::schema::Document;
-use crate::problem::schema::structures::{Direction, Per, Structure, Thickness, VariedThickness};
+use super::mesh::element_count;
+use crate::Variable;
+use crate::finding::Finding;
+use crate::pointer::{join, keys};
+use crate::schema::Document;
+use crate::schema::structures::{Direction, Per, Structure, Thickness, VariedThickness};
 use serde_json::Value;
 
 /// How many values a varied thickness of a structure has.
-pub(crate) fn thickness_count(structure: &Structure, varied: &VariedThickness) -> usize {
-    let [nx, ny] = panel_elements(&structure.mesh).unwrap_or([element_count(&structure.mesh), 1]);
+pub fn thickness_count(structure: &Structure, varied: &VariedThickness) -> usize {
+    let [nx, ny] = structure
+        .mesh
+        .panel_elements()
+        .unwrap_or([element_count(&structure.mesh), 1]);
     match varied.per {
         Per::Element => nx * ny,
         Per::Band => varied.bands.unwrap_or(match varied.along {
@@ -23,7 +26,7 @@ pub(crate) fn thickness_count(structure: &Structure, varied: &VariedThickness) -
 }
 
 /// How many sections a structure has.
-pub(crate) fn section_count(structure: &Structure) -> usize {
+pub fn section_count(structure: &Structure) -> usize {
     match &structure.sections {
         None => 1,
         Some(varied) => match varied.per {
@@ -63,7 +66,7 @@ fn varied(document: &Document) -> Vec<(String, usize)> {
 
 /// Writes every value of the varied properties of `value`, which is `document`, and gives the variables
 /// that those of one value stand for.
-pub(crate) fn expand(
+pub fn expand(
     document: &Document,
     value: &mut Value,
     variables: Vec<Variable>,
@@ -124,7 +127,7 @@ pub(crate) fn expand(
 }
 
 /// Whether a path leads to a thickness or section, whose derivatives go straight to the variable.
-pub(crate) fn is_direct(path: &str) -> bool {
+pub fn is_direct(path: &str) -> bool {
     let keys = keys(path);
     let property = keys.get(2).map_or("", String::as_str);
     keys.first().is_some_and(|key| key == "structures")

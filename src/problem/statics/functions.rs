@@ -2,14 +2,14 @@
 
 use super::mesh::of_file;
 use crate::math::Vec3;
-use crate::problem::schema::Document;
-use crate::problem::schema::functions::Function as Written;
-use crate::problem::schema::statics::StressAggregate;
+use crate::schema::Document;
+use crate::schema::functions::Function as Written;
+use crate::schema::statics::StressAggregate;
 use crate::structures::functions::{Aggregate, Function};
 
 /// A function of structures.
 #[derive(Clone, Debug, PartialEq)]
-pub(crate) enum Asked {
+pub enum Asked {
     /// Of the structure and its static solutions.
     OfSolutions(Function),
     /// Natural frequency of this number from 0 \[Hz\].
@@ -22,7 +22,7 @@ pub(crate) enum Asked {
 
 impl Asked {
     /// SI unit of its values.
-    pub(crate) fn unit(&self) -> &'static str {
+    pub fn unit(&self) -> &'static str {
         match self {
             Self::OfSolutions(function) => match function {
                 Function::Mass => "kg",

@@ -1,14 +1,14 @@
 //! The mesh of one structure of a file, and the sets that it names.
 
 use crate::math::{Scalar, Vec3};
-use crate::problem::quantity::{Quantity, vector};
-use crate::problem::schema::structures::{Mesh as Written, Set, Structure};
+use crate::quantity::{Quantity, vector};
+use crate::schema::structures::{Mesh as Written, Set, Structure};
 use crate::structures::generate::{self, Generated, GeneratedBeams};
 use crate::structures::mesh::Mesh;
 use indexmap::IndexMap;
 
 /// A mesh with its nodes \[m\]. Every element of the file may be cut into `cuts` along each direction.
-pub(crate) struct Part<S> {
+pub struct Part<S> {
     pub mesh: Mesh,
     pub nodes: Vec<Vec3<S>>,
     /// A vector for each beam.
@@ -19,28 +19,17 @@ pub(crate) struct Part<S> {
     pub of_file: Vec<bool>,
 }
 
-/// Numbers of elements of a panel in the file.
-pub(crate) fn panel_elements(mesh: &Written) -> Option<[usize; 2]> {
-    match mesh {
-        Written::Plate { elements, .. }
-        | Written::Panel { elements, .. }
-        | Written::CurvedPanel { elements, .. }
-        | Written::Cylinder { elements, .. } => Some(*elements),
-        Written::StraightBeam { .. } | Written::CurvedBeam { .. } | Written::Frame { .. } => None,
-    }
-}
-
 /// Number of elements of a structure in the file.
-pub(crate) fn element_count(mesh: &Written) -> usize {
+pub fn element_count(mesh: &Written) -> usize {
     match mesh {
         Written::StraightBeam { elements, .. } | Written::CurvedBeam { elements, .. } => *elements,
         Written::Frame { members, .. } => members.values().map(|member| member.elements).sum(),
-        panel => panel_elements(panel).map_or(0, |[nx, ny]| nx * ny),
+        panel => panel.panel_elements().map_or(0, |[nx, ny]| nx * ny),
     }
 }
 
 /// The mesh of a structure at the design `x`.
-pub(crate) fn part<S: Scalar>(structure: &Structure, x: &[S], cuts: usize) -> Part<S> {
+pub fn part<S: Scalar>(structure: &Structure, x: &[S], cuts: usize) -> Part<S> {
     let mut part = generated(&structure.mesh, x, cuts);
     if let Some(at) = &structure.at {
         let at = vector(at, x);
@@ -53,7 +42,7 @@ pub(crate) fn part<S: Scalar>(structure: &Structure, x: &[S], cuts: usize) -> Pa
 }
 
 /// The mesh of a generator, without sets of the file.
-pub(crate) fn generated<S: Scalar>(mesh: &Written, x: &[S], cuts: usize) -> Part<S> {
+pub fn generated<S: Scalar>(mesh: &Written, x: &[S], cuts: usize) -> Part<S> {
     let finer = |elements: &[usize; 2]| elements.map(|n| n * cuts);
     let angles = |angles: &[Quantity; 2]| angles.map(|angle| angle.get(x));
     match mesh {
@@ -170,8 +159,8 @@ fn of_line<S: Scalar>(line: GeneratedBeams<S>, cuts: usize) -> Part<S> {
 }
 
 fn frame<S: Scalar>(
-    points: &IndexMap<String, crate::problem::quantity::Vector>,
-    members: &IndexMap<String, crate::problem::schema::structures::Member>,
+    points: &IndexMap<String, crate::quantity::Vector>,
+    members: &IndexMap<String, crate::schema::structures::Member>,
     x: &[S],
     cuts: usize,
 ) -> Part<S> {
@@ -220,7 +209,7 @@ fn frame<S: Scalar>(
 }
 
 fn add_set<S: Scalar>(part: &mut Part<S>, mesh: &Written, name: &str, set: &Set, cuts: usize) {
-    let panel = panel_elements(mesh);
+    let panel = mesh.panel_elements();
     let count = element_count(mesh);
     match set {
         Set::Node { at: [r, s] } => {

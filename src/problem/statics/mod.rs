@@ -1,22 +1,22 @@
 //! Structures of a file: from a design to meshes, properties and loads, and back.
 
-pub(crate) mod expand;
+pub mod expand;
 mod functions;
-pub(crate) mod mesh;
-pub(crate) mod per_thickness;
-pub(crate) mod properties;
+pub mod mesh;
+pub mod per_thickness;
+pub mod properties;
 mod pull_back;
 mod workspace;
 
-pub(crate) use functions::Asked;
-pub(crate) use pull_back::{Moved, PulledBack};
-pub(crate) use workspace::{Workspace, Workspaces};
+pub use functions::Asked;
+pub use pull_back::{Moved, PulledBack};
+pub use workspace::{Workspace, Workspaces};
 
-use super::quantity::{Quantity, vector};
-use super::schema::Document;
-use super::schema::statics::{CaseLoad, Strains, Unknowns};
-use super::schema::structures::{self as written, Held};
 use crate::math::{Scalar, Vec3};
+use crate::quantity::{Quantity, vector};
+use crate::schema::Document;
+use crate::schema::statics::{CaseLoad, Strains, Unknowns};
+use crate::schema::structures::{self as written, Held};
 use crate::structures::functions::Function;
 use crate::structures::loads::Load;
 use crate::structures::lumped_mass::LumpedMass;
@@ -36,7 +36,7 @@ use std::sync::Arc;
 
 /// Structures and load cases at a design.
 #[derive(Clone, Debug)]
-pub(crate) struct StaticScene<S> {
+pub struct StaticScene<S> {
     /// All structures as one.
     pub structure: Structure<S>,
     /// The loads of each case.
@@ -45,7 +45,7 @@ pub(crate) struct StaticScene<S> {
 
 /// Data of the structures of a file that no design changes.
 #[derive(Clone, Debug)]
-pub(crate) struct Statics {
+pub struct Statics {
     topology: Arc<Topology>,
     /// Number of cuts of each element of the file along each direction.
     pub cuts: usize,
@@ -81,7 +81,7 @@ impl Statics {
     ///
     /// # Errors
     /// The faults of the meshes, with the names of their structures.
-    pub(crate) fn new(
+    pub fn new(
         document: &Document,
         x: &[f64],
         cuts: usize,
@@ -172,17 +172,13 @@ impl Statics {
     }
 
     /// The mesh of all structures.
-    pub(crate) fn mesh(&self) -> &Mesh {
+    pub fn mesh(&self) -> &Mesh {
         &self.topology.mesh
     }
 
     /// The structure with load cases of which a part can move without strain, and the node that
     /// moves.
-    pub(crate) fn mechanism(
-        &self,
-        document: &Document,
-        x: &[f64],
-    ) -> Option<(String, StaticFailure)> {
+    pub fn mechanism(&self, document: &Document, x: &[f64]) -> Option<(String, StaticFailure)> {
         if self.cases.is_empty() {
             return None;
         }
@@ -221,7 +217,7 @@ impl Statics {
 
     /// The functions of reactions of nodes that no support holds in their direction: these are zero
     /// at all designs.
-    pub(crate) fn unsupported(&self) -> Vec<usize> {
+    pub fn unsupported(&self) -> Vec<usize> {
         let sets = &self.mesh().node_sets;
         let nodes_of = |set: &String| sets.get(set).map_or(&[][..], Vec::as_slice);
         let holds = |set: &String, held: &dyn Fn(&Support) -> bool| {
@@ -251,7 +247,7 @@ impl Statics {
 
     /// The first moment on a shell, by load case and load, of which a part is along the normal at a node without a
     /// rotation about it, and where this node is. Designs that tilt the shell later have it turn the surface.
-    pub(crate) fn moment_along_normal(
+    pub fn moment_along_normal(
         &self,
         document: &Document,
         x: &[f64],
@@ -271,7 +267,7 @@ impl Statics {
     }
 
     /// The structures at the design `x`.
-    pub(crate) fn scene<S: Scalar>(&self, document: &Document, x: &[S]) -> StaticScene<S> {
+    pub fn scene<S: Scalar>(&self, document: &Document, x: &[S]) -> StaticScene<S> {
         let (mut nodes, mut orientations) = (Vec::new(), Vec::new());
         for structure in document.structures.values() {
             let part = mesh::part(structure, x, self.cuts);
@@ -329,7 +325,7 @@ impl Statics {
     }
 
     fn load<S: Scalar>(&self, load: &CaseLoad, x: &[S]) -> Load<S> {
-        let some = |v: &Option<super::quantity::Vector>| {
+        let some = |v: &Option<crate::quantity::Vector>| {
             v.as_ref().map_or(Vec3::zeros(), |v| vector(v, x))
         };
         match load {

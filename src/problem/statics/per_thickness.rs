@@ -4,15 +4,15 @@
 //! the thickness that it limits.
 
 use super::expand::thickness_count;
-use crate::problem::finding::Finding;
-use crate::problem::pointer::join;
-use crate::problem::schema::Document;
-use crate::problem::schema::statics::Stress;
-use crate::problem::schema::structures::Thickness;
+use crate::finding::Finding;
+use crate::pointer::join;
+use crate::schema::Document;
+use crate::schema::statics::Stress;
+use crate::schema::structures::Thickness;
 use serde_json::{Map, Value};
 
 /// Whether a stress of a document is per thickness.
-pub(crate) fn is_used(document: &Document) -> bool {
+pub fn is_used(document: &Document) -> bool {
     of_document(document).next().is_some()
 }
 
@@ -26,7 +26,7 @@ fn of_document(document: &Document) -> impl Iterator<Item = (&String, &Stress)> 
 }
 
 /// Name of the set of the elements that have a thickness of a structure.
-pub(crate) fn set(structure: &str, thickness: usize) -> String {
+pub fn set(structure: &str, thickness: usize) -> String {
     format!("thickness {thickness} of {structure}")
 }
 
@@ -48,7 +48,7 @@ fn sets(document: &Document) -> Vec<String> {
 ///
 /// # Errors
 /// If such a stress is the objective, or a name is taken.
-pub(crate) fn expand(document: &Document, value: &mut Value) -> Result<(), Finding> {
+pub fn expand(document: &Document, value: &mut Value) -> Result<(), Finding> {
     let several: Vec<&String> = of_document(document).map(|(name, _)| name).collect();
     if several.is_empty() {
         return Ok(());

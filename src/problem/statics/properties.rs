@@ -1,14 +1,14 @@
 //! Thickness and sections of a structure: which value each element has, and its quantity.
 
-use super::mesh::{Part, panel_elements};
+use super::mesh::Part;
 use crate::math::Scalar;
-use crate::problem::quantity::Quantity;
-use crate::problem::schema::structures::{self as written, Per, Section as WrittenSection};
+use crate::quantity::Quantity;
+use crate::schema::structures::{self as written, Per, Section as WrittenSection};
 use crate::structures::beam::{Section, SectionValues};
 
 /// Which value of its structure each element has.
-pub(crate) fn slots(structure: &written::Structure, part: &Part<f64>) -> Vec<usize> {
-    let panel = panel_elements(&structure.mesh);
+pub fn slots(structure: &written::Structure, part: &Part<f64>) -> Vec<usize> {
+    let panel = structure.mesh.panel_elements();
     let of_groups = |groups: &[String], e: usize| {
         let sets = match panel {
             Some(_) => &part.mesh.face_sets,
@@ -49,7 +49,7 @@ pub(crate) fn slots(structure: &written::Structure, part: &Part<f64>) -> Vec<usi
 }
 
 /// The thickness of this number.
-pub(crate) fn thickness(structure: &written::Structure, slot: usize) -> Quantity {
+pub fn thickness(structure: &written::Structure, slot: usize) -> Quantity {
     let none = Quantity::fixed(0.0);
     match &structure.thickness {
         None => none,
@@ -62,7 +62,7 @@ pub(crate) fn thickness(structure: &written::Structure, slot: usize) -> Quantity
 }
 
 /// The section of this number.
-pub(crate) fn section(structure: &written::Structure, slot: usize) -> Option<&WrittenSection> {
+pub fn section(structure: &written::Structure, slot: usize) -> Option<&WrittenSection> {
     match (&structure.section, &structure.sections) {
         (Some(one), _) => Some(one),
         (None, Some(varied)) => match &varied.values {
@@ -98,14 +98,14 @@ pub(super) fn section_at<S: Scalar>(written: Option<&WrittenSection>, x: &[S]) -
 }
 
 /// The section with the values that `get` gives to quantities.
-pub(crate) fn section_by<S: Scalar>(
+pub fn section_by<S: Scalar>(
     written: Option<&WrittenSection>,
     get: impl Fn(&Quantity) -> S,
 ) -> Section<S> {
     let Some(written) = written else {
         return Section::Given(SectionValues::zeros());
     };
-    crate::problem::section::section_by(written, &get, |given| {
+    crate::section::section_by(written, &get, |given| {
         let [ea, ga2, ga3] = given.axial_and_shear.each_ref().map(&get);
         let [gj, ei2, ei3] = given.torsion_and_bending.each_ref().map(&get);
         let [i2, i3] = given.inertia.each_ref().map(&get);

@@ -7,13 +7,13 @@
 use super::properties::{quantities, section, thickness};
 use super::{StaticScene, Statics};
 use crate::math::{Dual, Scalar};
-use crate::problem::schema::Document;
+use crate::schema::Document;
 use crate::structures::loads::Load;
 use crate::structures::structure::Structure;
 
 /// Derivatives by the design variables, and the sums of the sizes of their terms.
 #[derive(Clone, Debug, PartialEq)]
-pub(crate) struct PulledBack {
+pub struct PulledBack {
     pub values: Vec<f64>,
     pub terms: Vec<f64>,
 }
@@ -26,11 +26,11 @@ impl PulledBack {
 }
 
 /// Derivatives of the numbers except thickness and sections in some variables.
-pub(crate) struct Moved(Vec<(usize, Vec<f64>)>);
+pub struct Moved(Vec<(usize, Vec<f64>)>);
 
 impl Moved {
     /// Whether thickness and sections are all that a design moves.
-    pub(crate) fn is_empty(&self) -> bool {
+    pub fn is_empty(&self) -> bool {
         self.0.is_empty()
     }
 }
@@ -67,7 +67,7 @@ impl<'a, S: Scalar, I: Iterator<Item = &'a crate::math::Vec3<S>>> FlattenXyz<S> 
 
 impl Statics {
     /// Derivatives of the numbers except thickness and sections in the variables `which`.
-    pub(crate) fn moved(&self, document: &Document, x: &[f64], which: &[usize]) -> Moved {
+    pub fn moved(&self, document: &Document, x: &[f64], which: &[usize]) -> Moved {
         let one = |&i: &usize| {
             let seeded = x.iter().enumerate();
             let seeded = seeded.map(|(j, &x)| Dual::new(x, f64::from(u8::from(i == j))));
@@ -80,7 +80,7 @@ impl Statics {
     }
 
     /// Derivatives by the design variables, from those by the structure and the loads.
-    pub(crate) fn pull_back(
+    pub fn pull_back(
         &self,
         document: &Document,
         variables: usize,

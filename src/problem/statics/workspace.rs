@@ -8,7 +8,7 @@ use std::sync::{Arc, Mutex};
 
 /// Matrices of one design at a time.
 #[derive(Default)]
-pub(crate) struct Workspace {
+pub struct Workspace {
     /// For load cases; made when it is needed first.
     pub statics: Option<StaticProblem>,
     /// For frequencies; made when it is needed first.
@@ -17,17 +17,17 @@ pub(crate) struct Workspace {
 
 /// Workspaces that no design uses at present.
 #[derive(Clone, Default)]
-pub(crate) struct Workspaces(Arc<Mutex<Vec<Workspace>>>);
+pub struct Workspaces(Arc<Mutex<Vec<Workspace>>>);
 
 impl Workspaces {
     /// One that is free, or a new one.
-    pub(crate) fn take(&self) -> Workspace {
+    pub fn take(&self) -> Workspace {
         let free = self.0.lock().ok().and_then(|mut all| all.pop());
         free.unwrap_or_default()
     }
 
     /// Gives one back.
-    pub(crate) fn give(&self, workspace: Workspace) {
+    pub fn give(&self, workspace: Workspace) {
         if let Ok(mut all) = self.0.lock() {
             all.push(workspace);
         }

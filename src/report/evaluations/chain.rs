@@ -18,7 +18,7 @@ pub(super) struct Chain {
 
 impl Chain {
     /// The chain of a file with this head.
-    pub(crate) fn of(head: &Head) -> Result<Self, serde_json::Error> {
+    pub fn of(head: &Head) -> Result<Self, serde_json::Error> {
         let lasting = serde_json::to_string(&head.without_settings())?;
         Ok(Self {
             hash: digest("", lasting.as_bytes()),
@@ -26,13 +26,13 @@ impl Chain {
     }
 
     /// The hash after one more line, given without its hash.
-    pub(crate) fn next(&mut self, line: &[u8]) -> &str {
+    pub fn next(&mut self, line: &[u8]) -> &str {
         self.hash = digest(&self.hash, line);
         &self.hash
     }
 
     /// The next line, with its hash and its end.
-    pub(crate) fn line(&mut self, record: &EvaluationRecord) -> Result<String, serde_json::Error> {
+    pub fn line(&mut self, record: &EvaluationRecord) -> Result<String, serde_json::Error> {
         let mut line = serde_json::to_string(record)?;
         self.next(line.as_bytes());
         // The brace of the record comes after the hash.
@@ -44,7 +44,7 @@ impl Chain {
     }
 
     /// A line without its hash, and that hash, if it has one.
-    pub(crate) fn split(line: &[u8]) -> (Cow<'_, [u8]>, Option<String>) {
+    pub fn split(line: &[u8]) -> (Cow<'_, [u8]>, Option<String>) {
         let hash = line.strip_suffix(AROUND.1.as_bytes()).and_then(|rest| {
             let (before, hash) = rest.split_at_checked(rest.len().checked_sub(2 * BYTES)?)?;
             let body = before.strip_suffix(AROUND.0.as_bytes())?;

@@ -2,8 +2,8 @@
 
 use super::chain::Chain;
 use super::{EvaluationRecord, Found, Head};
-use crate::report::ReportError;
-use crate::report::files::atomic_begin;
+use crate::ReportError;
+use crate::files::atomic_begin;
 use serde_json::error::Category;
 use std::fs::File;
 use std::io::{ErrorKind, Write};
@@ -15,7 +15,7 @@ const SYNCHRONISE: Duration = Duration::from_secs(1);
 
 /// The complete evaluations of an earlier run; a truncated last line is dropped.
 #[derive(Clone, Debug, PartialEq)]
-pub(crate) struct Earlier {
+pub struct Earlier {
     /// The head: the problem of the evaluations.
     pub head: Head,
     /// Evaluations and choices of steps, in order.
@@ -31,7 +31,7 @@ impl Earlier {
     ///
     /// # Errors
     /// [`ReportError`] if the file cannot be read, is damaged, or does not belong to `head`.
-    pub(crate) fn read(path: &Path, head: &Head) -> Result<Option<Self>, ReportError> {
+    pub fn read(path: &Path, head: &Head) -> Result<Option<Self>, ReportError> {
         let bytes = match std::fs::read(path) {
             Err(error) if error.kind() == ErrorKind::NotFound => return Ok(None),
             found => found.map_err(|source| ReportError::Read {
@@ -117,7 +117,7 @@ fn damage(error: &serde_json::Error) -> String {
 
 /// The open file.
 #[derive(Debug)]
-pub(crate) struct EvaluationLog {
+pub struct EvaluationLog {
     path: PathBuf,
     file: File,
     chain: Chain,
@@ -130,7 +130,7 @@ impl EvaluationLog {
     ///
     /// # Errors
     /// [`ReportError::Write`] with the path.
-    pub(crate) fn create(
+    pub fn create(
         path: &Path,
         head: &Head,
         earlier: Option<&Earlier>,
@@ -153,7 +153,7 @@ impl EvaluationLog {
     ///
     /// # Errors
     /// [`ReportError::Write`] with the path.
-    pub(crate) fn append(&mut self, record: &EvaluationRecord) -> Result<(), ReportError> {
+    pub fn append(&mut self, record: &EvaluationRecord) -> Result<(), ReportError> {
         let line = self.chain.line(record)?;
         self.file
             .write_all(line.as_bytes())
@@ -189,7 +189,7 @@ impl Drop for EvaluationLog {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::report::evaluations::{StepsInUse, Work};
+    use crate::evaluations::{StepsInUse, Work};
 
     fn head(sha256: &str, iterations: usize) -> Head {
         let settings =

@@ -5,7 +5,7 @@
 mod chain;
 mod log;
 
-pub(crate) use log::{Earlier, EvaluationLog};
+pub use log::{Earlier, EvaluationLog};
 
 use crate::integrate::{Grid, Method, WorkCounts};
 use crate::system::RedundantRows;
@@ -16,7 +16,7 @@ use std::collections::BTreeMap;
 /// The head of the file, its first line: the problem of the evaluations.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
-pub(crate) struct Head {
+pub struct Head {
     /// SHA-256, hexadecimal, of those parts of the problem's document that may affect the
     /// functions.
     pub sha256: String,
@@ -78,7 +78,7 @@ impl Head {
     }
 
     /// The settings that differ from those of `earlier`, as `POINTER was OLD, is NEW`.
-    pub(crate) fn changes(&self, earlier: &Head) -> Vec<String> {
+    pub fn changes(&self, earlier: &Head) -> Vec<String> {
         let all = |head: &Head| {
             let mut leaves = BTreeMap::new();
             flatten(&Value::Object(head.settings.clone()), "", &mut leaves);
@@ -118,7 +118,7 @@ fn flatten(value: &Value, pointer: &str, leaves: &mut BTreeMap<String, Value>) {
 /// One evaluation.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
-pub(crate) struct EvaluationRecord {
+pub struct EvaluationRecord {
     /// The design, in the units of the problem file.
     pub design: Vec<f64>,
     /// Its results.
@@ -135,7 +135,7 @@ pub(crate) struct EvaluationRecord {
 /// Work of an evaluation; zero for one that failed.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
-pub(crate) struct Work {
+pub struct Work {
     /// Time steps.
     pub steps: usize,
     /// Steps of the motion that a gradient repeated because memory is limited.
@@ -184,7 +184,7 @@ fn is_zero(count: &usize) -> bool {
 /// Results of an evaluation.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 #[serde(rename_all = "snake_case")]
-pub(crate) enum Found {
+pub enum Found {
     /// Values of the functions.
     Values(Vec<f64>),
     /// Gradients of the functions, function by function.
@@ -203,7 +203,7 @@ const MOST_CELLS: u32 = 4096;
 /// Method and steps that were chosen at one design and are kept for later ones.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
-pub(crate) struct StepsInUse {
+pub struct StepsInUse {
     /// Name of the method.
     pub method: String,
     /// Why they were chosen.
@@ -232,7 +232,7 @@ pub(crate) struct StepsInUse {
 /// Constraint rows that are left out from a step on.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
-pub(crate) struct RowsLeftOut {
+pub struct RowsLeftOut {
     /// The step, counted from 1.
     pub from: usize,
     /// Numbers of the rows, counted from 0.
@@ -243,7 +243,7 @@ pub(crate) struct RowsLeftOut {
 
 impl StepsInUse {
     /// The steps with their redundant rows. `None` if they are equal, or not valid for any motion.
-    pub(crate) fn grid(&self) -> Option<Grid> {
+    pub fn grid(&self) -> Option<Grid> {
         let grid = Grid::from_ends(self.ends.clone())?.with_cells(self.cells.clone());
         let mut grid = grid.with_kinks(self.kinks.clone(), self.equal)?;
         for RowsLeftOut { from, rows, of } in &self.left_out {

@@ -2,7 +2,7 @@
 
 mod stage;
 
-pub(crate) use stage::{Body, Link, Shape, Stage};
+pub use stage::{Arrow, Body, Link, Shape, Stage};
 
 use super::{History, HistoryRow, Optimum};
 use serde::Serialize;
@@ -19,7 +19,7 @@ const PROGRAMS: [&str; 4] = [
 
 /// What a page shows.
 #[derive(Clone, Debug, Serialize)]
-pub(crate) struct Page<'a> {
+pub struct Page<'a> {
     /// Name of the problem.
     pub name: &'a str,
     /// The description in its file.
@@ -44,7 +44,7 @@ pub(crate) struct Page<'a> {
 
 /// Curves over one axis.
 #[derive(Clone, Debug, PartialEq, Serialize)]
-pub(crate) struct Chart {
+pub struct Chart {
     /// What it shows.
     pub title: String,
     /// Label of the horizontal axis.
@@ -61,7 +61,7 @@ pub(crate) struct Chart {
 
 /// A curve.
 #[derive(Clone, Debug, PartialEq, Serialize)]
-pub(crate) struct Curve {
+pub struct Curve {
     /// Its name.
     pub name: String,
     /// Points; those that are not finite are left out.
@@ -73,7 +73,7 @@ const MOST_POINTS: usize = 600;
 
 impl Curve {
     /// A curve through at most 600 of the points: of each part of the others, the lowest and the highest.
-    pub(crate) fn new(name: impl Into<String>, points: impl IntoIterator<Item = [f64; 2]>) -> Self {
+    pub fn new(name: impl Into<String>, points: impl IntoIterator<Item = [f64; 2]>) -> Self {
         let finite = points
             .into_iter()
             .filter(|p| p.iter().all(|x| x.is_finite()));
@@ -100,7 +100,7 @@ impl Curve {
 }
 
 /// A number to six digits: pictures show no more.
-pub(crate) fn rounded(x: f64) -> f64 {
+pub fn rounded(x: f64) -> f64 {
     if x == 0.0 || !x.is_finite() {
         return 0.0;
     }
@@ -116,7 +116,7 @@ pub(crate) fn rounded(x: f64) -> f64 {
 }
 
 /// The curves of the convergence of an optimisation.
-pub(crate) fn convergence(history: &History) -> Vec<Chart> {
+pub fn convergence(history: &History) -> Vec<Chart> {
     let label = |name: &str, unit: &Option<String>| match unit.as_deref() {
         None | Some("" | "1") => name.to_owned(),
         Some(unit) => format!("{name} [{unit}]"),
@@ -194,7 +194,7 @@ pub(crate) fn convergence(history: &History) -> Vec<Chart> {
 ///
 /// # Errors
 /// If a number of the record is not finite.
-pub(crate) fn html(page: &Page) -> Result<String, serde_json::Error> {
+pub fn html(page: &Page) -> Result<String, serde_json::Error> {
     // No text of a problem may end the element that it stands in.
     let data = serde_json::to_string(page)?.replace('<', "\\u003c");
     let title = page.name.replace('&', "&amp;").replace('<', "&lt;");

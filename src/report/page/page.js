@@ -28,6 +28,19 @@ if (scenes.length) {
     reset.onclick = () => { cameras.forEach(c => c.reset()); show(); };
     const controls = element("div", undefined, "controls"); controls.append(play, slider, output, speed, reset); main.append(controls);
   }
+  const settings = element("div", undefined, "controls"), drawn = scenes.filter(s => s.stage.arrows.length), coloured = scenes.filter(s => s.stage.range);
+  if (drawn.length) {
+    const most = Math.max(...drawn.flatMap(s => s.stage.arrows.flatMap(a => a.forces.map(e => Math.hypot(...e.slice(3)))))) || 1, box = element("input"), label = element("label", " forces of joints (blue) and loads (red)");
+    box.type = "checkbox"; box.id = "forces"; label.prepend(box); box.onchange = () => { for (const s of drawn) { s.forces = box.checked; s.most = most; } show(); }; settings.append(label);
+  }
+  if (coloured.length) {
+    const own = coloured.map(s => s.stage.range), limit = (name, side) => {
+      const field = element("input"), label = element("label", name + " "); field.type = "number"; field.step = "any"; field.id = "colour" + side; field.placeholder = number(own[0][side]); label.append(field);
+      field.onchange = () => { coloured.forEach((s, i) => { s.stage.range = [...s.stage.range]; s.stage.range[side] = field.value === "" ? own[i][side] : +field.value; }); show(); }; settings.append(label);
+    };
+    limit("colours from", 0); limit("to", 1);
+  }
+  if (settings.childNodes.length) main.append(settings);
   const row = element("div", undefined, "scenes"); row.append(...scenes.map(s => s.figure)); main.append(row);
   const names = [...new Set(data.stages.flatMap(s => s.bodies.map(b => b.name)))].filter(n => n), legend = element("div", undefined, "legend");
   names.slice(0, 30).forEach((n, i) => { const e = element("span", n); e.style.setProperty("--c", COLOURS[i % COLOURS.length]); legend.append(e); }); main.append(legend);

@@ -41,7 +41,7 @@ class Scene {
     this.canvas.tabIndex = 0; this.canvas.setAttribute("role", "img"); this.canvas.id = "scene" + index;
     this.canvas.setAttribute("aria-label", `${stage.title || "motion"}: ${stage.bodies.map(b => b.name).filter(n => n).join(", ") || "structure"}. Arrow keys turn, plus and minus zoom, 0 resets the view.`);
     this.caption = document.createElement("figcaption"); this.figure.append(this.canvas, this.caption);
-    this.bounds(); this.share = 0;
+    this.bounds(); this.share = 0; this.forces = false; this.most = 1;
   }
   bounds() {
     const low = [Infinity, Infinity, Infinity], high = [-Infinity, -Infinity, -Infinity];
@@ -109,6 +109,15 @@ class Scene {
         const d = [b[0] - a[0], b[1] - a[1]], l = Math.hypot(...d) || 1; line([-14, 14].map(s => [a[0] + d[0] / l * s, a[1] + d[1] / l * s])); g.lineWidth = 4; g.stroke();
       } else if (link.kind !== "hinge") { line([a, b]); g.stroke(); }
       if (link.kind === "hinge") { g.beginPath(); g.arc(...a, 3.5, 0, 7); g.fillStyle = link.grounded ? ink("--ink") : ink("--back"); g.fill(); g.strokeStyle = ink("--ink"); g.stroke(); }
+    }
+    if (this.forces) {
+      g.font = "11px system-ui, sans-serif"; g.textBaseline = "bottom"; g.textAlign = "left";
+      for (const arrow of stage.arrows) {
+        const e = mix(arrow.forces[k0], arrow.forces[k1], f), size = Math.hypot(...e.slice(3)); if (size < 1e-9 * this.most) continue;
+        const a = flat(e.slice(0, 3)), b = [dot(camera.right, e.slice(3)), -dot(camera.up, e.slice(3))].map((x, i) => a[i] + 90 * x / this.most);
+        const d = [b[0] - a[0], b[1] - a[1]], l = Math.hypot(...d); g.strokeStyle = g.fillStyle = arrow.applied ? "#d7191c" : "#2c7bb6"; g.lineWidth = 2; line([a, b]); g.stroke();
+        if (l > 3) { const [u, v] = [d[0] / l, d[1] / l]; line([b, [b[0] - 7 * u + 3 * v, b[1] - 7 * v - 3 * u], [b[0] - 7 * u - 3 * v, b[1] - 7 * v + 3 * u]]); g.closePath(); g.fill(); g.fillText(number(size) + " N", b[0] + 4, b[1]); }
+      }
     }
     if (stage.range) {
       const [w, h] = [Math.min(150, width / 3), 9], x = width - w - 12;

@@ -4,7 +4,7 @@ use serde::Serialize;
 
 /// A machine in motion, a structure under load, or a mode.
 #[derive(Clone, Debug, PartialEq, Serialize)]
-pub(crate) struct Stage {
+pub struct Stage {
     /// What it is, such as `optimal design`.
     pub title: String,
     /// Instants \[s\]; of structures the part of the load, 0 and 1.
@@ -17,6 +17,8 @@ pub(crate) struct Stage {
     pub bodies: Vec<Body>,
     /// Joints, rods, springs and arms.
     pub links: Vec<Link>,
+    /// Forces, drawn on request.
+    pub arrows: Vec<Arrow>,
     /// Paths of points \[m\].
     pub paths: Vec<Vec<[f64; 3]>>,
     /// Directions to the right and up of the first view.
@@ -33,7 +35,7 @@ pub(crate) struct Stage {
 
 /// A body.
 #[derive(Clone, Debug, PartialEq, Serialize)]
-pub(crate) struct Body {
+pub struct Body {
     /// Its name.
     pub name: String,
     /// Its shape.
@@ -43,7 +45,7 @@ pub(crate) struct Body {
 /// The shape of a body. The pose of a rigid one at an instant: its origin \[m\], then the first and the second axis.
 #[derive(Clone, Debug, PartialEq, Serialize)]
 #[serde(tag = "kind", rename_all = "lowercase")]
-pub(crate) enum Shape {
+pub enum Shape {
     /// The convex hull of points.
     Hull {
         /// The points in body axes \[m\].
@@ -76,9 +78,20 @@ pub(crate) enum Shape {
     },
 }
 
+/// A force at a point.
+#[derive(Clone, Debug, PartialEq, Serialize)]
+pub struct Arrow {
+    /// The joint with the body that it acts on, or the load.
+    pub name: String,
+    /// Whether a load applies it; else a joint exerts it.
+    pub applied: bool,
+    /// Point \[m\] and force \[N\] in ground axes at each instant.
+    pub forces: Vec<[f64; 6]>,
+}
+
 /// A joint, rod, spring or arm.
 #[derive(Clone, Debug, PartialEq, Serialize)]
-pub(crate) struct Link {
+pub struct Link {
     /// `hinge`, `slider`, `rod`, `spring` or `arm`.
     pub kind: &'static str,
     /// Whether it joins a body to ground.

@@ -26,7 +26,7 @@ const DECADES: f64 = 24.0;
 impl Axis {
     /// A linear axis over all finite values, with a margin at both ends and at most `count + 1`
     /// ticks.
-    pub(crate) fn linear(values: impl Iterator<Item = f64>, count: usize, label: &str) -> Axis {
+    pub fn linear(values: impl Iterator<Item = f64>, count: usize, label: &str) -> Axis {
         let (low, high) = range(values);
         // A range that is tiny relative to its values would give equal numbers at all ticks.
         let least = 1e-8 * low.abs().max(high.abs());
@@ -39,7 +39,7 @@ impl Axis {
     }
 
     /// A linear axis from `low` to `high`.
-    pub(crate) fn exact(low: f64, high: f64, count: usize, label: &str) -> Axis {
+    pub fn exact(low: f64, high: f64, count: usize, label: &str) -> Axis {
         let mut ticks = linear_ticks(low, high, nice_step((high - low) / count as f64));
         if ticks.len() < 2 {
             // A single number at the ticks does not show a range.
@@ -55,7 +55,7 @@ impl Axis {
     }
 
     /// An axis of whole numbers from 0 to `last`.
-    pub(crate) fn counts(last: usize, count: usize, label: &str) -> Axis {
+    pub fn counts(last: usize, count: usize, label: &str) -> Axis {
         let last = last.max(1) as f64;
         let margin = 0.02 * last;
         let mut axis = Axis::exact(-margin, last + margin, count, label);
@@ -66,11 +66,7 @@ impl Axis {
 
     /// A logarithmic axis over all positive finite values, from one power of ten to another.
     /// Zeros and values far below the others lie under its floor.
-    pub(crate) fn logarithmic(
-        values: impl Iterator<Item = f64>,
-        count: usize,
-        label: &str,
-    ) -> Axis {
+    pub fn logarithmic(values: impl Iterator<Item = f64>, count: usize, label: &str) -> Axis {
         let (least, most) = range(values.filter(|&value| value > 0.0).map(f64::log10));
         let top = (most + 0.05).ceil();
         let floor = (least - 0.05).floor().max(top - DECADES).min(top - 1.0);
@@ -91,7 +87,7 @@ impl Axis {
     }
 
     /// The place of a value, 0 at the lower end and 1 at the upper one.
-    pub(crate) fn fraction(&self, value: f64) -> f64 {
+    pub fn fraction(&self, value: f64) -> f64 {
         match self.scale {
             Scale::Linear => (value - self.low) / (self.high - self.low),
             Scale::Logarithmic => (value / self.low).log10() / (self.high / self.low).log10(),
@@ -99,7 +95,7 @@ impl Axis {
     }
 
     /// Width of the widest number at a tick \[px\].
-    pub(crate) fn widest(&self) -> f64 {
+    pub fn widest(&self) -> f64 {
         let widths = self.ticks.iter().map(|(_, text)| text_width(text));
         widths.fold(0.0, f64::max)
     }

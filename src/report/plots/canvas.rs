@@ -1,7 +1,7 @@
 //! A drawing surface in pixels that becomes an SVG text, by plotters.
 
+use crate::ReportError;
 use crate::problem::visible;
-use crate::report::ReportError;
 use plotters::drawing::{DrawingAreaErrorKind, IntoDrawingArea};
 use plotters::element::{Circle, PathElement, Polygon, Text};
 use plotters::prelude::SVGBackend;
@@ -83,7 +83,7 @@ pub(super) struct Canvas {
 }
 
 impl Canvas {
-    pub(crate) fn new(width: f64, height: f64) -> Canvas {
+    pub fn new(width: f64, height: f64) -> Canvas {
         Canvas {
             width: width.ceil(),
             height: height.ceil(),
@@ -92,7 +92,7 @@ impl Canvas {
     }
 
     /// A line through points, of a width in pixels.
-    pub(crate) fn path(&mut self, points: &[Pixel], color: RGBColor, width: f64, alpha: f64) {
+    pub fn path(&mut self, points: &[Pixel], color: RGBColor, width: f64, alpha: f64) {
         let points = thinned(points);
         if points.len() > 1 {
             self.shapes.push((Shape::Path(points, width), color, alpha));
@@ -100,14 +100,14 @@ impl Canvas {
     }
 
     /// A line of dashes.
-    pub(crate) fn dashes(&mut self, points: &[Pixel], color: RGBColor, width: f64) {
+    pub fn dashes(&mut self, points: &[Pixel], color: RGBColor, width: f64) {
         for dash in dashes(points, 6.0, 3.5) {
             self.path(&dash, color, width, 1.0);
         }
     }
 
     /// A line of one of several patterns; the first is solid.
-    pub(crate) fn pattern(&mut self, points: &[Pixel], color: RGBColor, width: f64, number: usize) {
+    pub fn pattern(&mut self, points: &[Pixel], color: RGBColor, width: f64, number: usize) {
         match number % (DASHES.len() + 1) {
             0 => self.path(points, color, width, 1.0),
             k => {
@@ -120,36 +120,36 @@ impl Canvas {
     }
 
     /// A filled polygon.
-    pub(crate) fn area(&mut self, points: &[Pixel], color: RGBColor, alpha: f64) {
+    pub fn area(&mut self, points: &[Pixel], color: RGBColor, alpha: f64) {
         self.shapes
             .push((Shape::Area(points.to_vec()), color, alpha));
     }
 
     /// A filled circle.
-    pub(crate) fn disc(&mut self, centre: Pixel, radius: f64, color: RGBColor) {
+    pub fn disc(&mut self, centre: Pixel, radius: f64, color: RGBColor) {
         self.shapes.push((Shape::Disc(centre, radius), color, 1.0));
     }
 
     /// A triangle that points downwards: the value lies below the axis.
-    pub(crate) fn below_mark(&mut self, (x, y): Pixel, color: RGBColor) {
+    pub fn below_mark(&mut self, (x, y): Pixel, color: RGBColor) {
         let triangle = [(x - 4.0, y - 7.0), (x + 4.0, y - 7.0), (x, y)];
         self.area(&triangle, color, 1.0);
     }
 
     /// Text of ordinary size, centred vertically on the point.
-    pub(crate) fn text(&mut self, at: Pixel, text: &str, anchor: Anchor) {
+    pub fn text(&mut self, at: Pixel, text: &str, anchor: Anchor) {
         let shape = Shape::Text(at, visible(text), anchor, false);
         self.shapes.push((shape, INK, 1.0));
     }
 
     /// Bold text, centred vertically on the point.
-    pub(crate) fn title(&mut self, at: Pixel, text: &str, anchor: Anchor) {
+    pub fn title(&mut self, at: Pixel, text: &str, anchor: Anchor) {
         let shape = Shape::Text(at, visible(text), anchor, true);
         self.shapes.push((shape, BLACK, 1.0));
     }
 
     /// The picture as SVG.
-    pub(crate) fn svg(&self) -> Result<String, ReportError> {
+    pub fn svg(&self) -> Result<String, ReportError> {
         let fine = |length: f64| (length * FINE).round() as i32;
         let mut svg = String::new();
         let size = (

@@ -6,11 +6,11 @@ use super::panel::{Key, Panel};
 use plotters::style::RGBColor;
 
 /// A point of the plane that is drawn: horizontal and vertical coordinate \[m\].
-pub(crate) type Point = [f64; 2];
+pub type Point = [f64; 2];
 
 /// Kind of connector.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub(crate) enum ConnectorKind {
+pub enum ConnectorKind {
     /// A joint that rotates, at the first of its points.
     Hinge,
     /// A joint that slides, at its first point along the line to the second.
@@ -28,7 +28,7 @@ pub(crate) enum ConnectorKind {
 
 /// A connector at the instants of a time lapse.
 #[derive(Clone, Debug, PartialEq)]
-pub(crate) struct Connector {
+pub struct Connector {
     /// What it is.
     pub kind: ConnectorKind,
     /// Whether it joins a body to ground.

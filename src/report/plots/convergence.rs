@@ -3,7 +3,7 @@
 use super::axis::{Axis, Scale};
 use super::canvas::{Canvas, PALETTE};
 use super::panel::{BELOW, Key, Legend, Panel, room_left};
-use crate::report::{History, HistoryRow, ReportError};
+use crate::{History, HistoryRow, ReportError};
 use plotters::style::RGBColor;
 
 const WIDTH: f64 = 640.0;
@@ -26,7 +26,7 @@ struct Curve<'a> {
 ///
 /// # Errors
 /// [`ReportError::NothingToDraw`] for a history without rows.
-pub(crate) fn convergence(history: &History) -> Result<String, ReportError> {
+pub fn convergence(history: &History) -> Result<String, ReportError> {
     let Some(last) = history.rows.iter().map(|row| row.iteration).max() else {
         return Err(ReportError::NothingToDraw {
             figure: "convergence",

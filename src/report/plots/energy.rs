@@ -3,12 +3,12 @@
 use super::axis::Axis;
 use super::canvas::{Anchor, BLACK, Canvas, PALETTE};
 use super::panel::{BELOW, Key, Legend, Panel, room_left};
-use crate::report::ReportError;
+use crate::ReportError;
 use plotters::style::RGBColor;
 
 /// Energies of one simulation, one entry an instant.
 #[derive(Clone, Debug, PartialEq)]
-pub(crate) struct EnergyRun {
+pub struct EnergyRun {
     /// What was simulated, such as `initial design`; may be empty for a single run.
     pub title: String,
     /// Instants \[s\].
@@ -25,7 +25,7 @@ pub(crate) struct EnergyRun {
 /// # Errors
 /// [`ReportError::NothingToDraw`] if there is no run, or if a run has no instants or not one
 /// energy of each kind for every instant.
-pub(crate) fn energy(runs: &[EnergyRun]) -> Result<String, ReportError> {
+pub fn energy(runs: &[EnergyRun]) -> Result<String, ReportError> {
     let nothing = |missing| ReportError::NothingToDraw {
         figure: "energy",
         missing,

@@ -3,13 +3,13 @@
 use super::axis::Axis;
 use super::canvas::{Anchor, BLACK, Canvas, PALETTE};
 use super::panel::{BELOW, Key, Legend, Panel, room_left};
-use crate::report::ReportError;
-use crate::report::number::significant;
+use crate::ReportError;
+use crate::number::significant;
 use plotters::style::RGBColor;
 
 /// Quantities of one design, one value an instant.
 #[derive(Clone, Debug, PartialEq)]
-pub(crate) struct History {
+pub struct History {
     /// What was simulated, such as `initial design`; may be empty for a single run.
     pub title: String,
     /// Instants \[s\].
@@ -22,7 +22,7 @@ pub(crate) struct History {
 
 /// A limit, drawn as a line across the panel.
 #[derive(Clone, Debug, PartialEq)]
-pub(crate) struct Limit {
+pub struct Limit {
     /// Its value.
     pub value: f64,
     /// The unit of the value.
@@ -32,7 +32,7 @@ pub(crate) struct Limit {
 }
 
 /// A row of panels: the label of its axis, and the designs.
-pub(crate) type Row<'a> = (&'a str, Vec<History>);
+pub type Row<'a> = (&'a str, Vec<History>);
 
 /// Gap between panels, side by side and one below the other \[px\].
 const GAP: f64 = 26.0;
@@ -42,7 +42,7 @@ const BETWEEN: f64 = 18.0;
 ///
 /// # Errors
 /// [`ReportError::NothingToDraw`] if there is no curve, or if a curve has not one value for each instant.
-pub(crate) fn histories(rows: &[Row]) -> Result<String, ReportError> {
+pub fn histories(rows: &[Row]) -> Result<String, ReportError> {
     let nothing = |missing| ReportError::NothingToDraw {
         figure: "history",
         missing,

@@ -5,12 +5,12 @@ use super::canvas::{BLACK, Canvas, INK, MORE, PALETTE};
 use super::colours::colour;
 use super::connectors::{self, Connector, Point};
 use super::panel::{Key, Legend, Panel};
-use crate::report::number::significant;
+use crate::number::significant;
 use plotters::style::RGBColor;
 
 /// A body at the instants of a time lapse.
 #[derive(Clone, Debug, PartialEq)]
-pub(crate) struct BodyMotion {
+pub struct BodyMotion {
     /// Name of the body.
     pub name: String,
     /// Its outline at each instant, early to late: a polygon, or a line of two points.
@@ -23,7 +23,7 @@ pub(crate) struct BodyMotion {
 
 /// A polygon, or a line of two points, with the colour of a value, a stress \[Pa\].
 #[derive(Clone, Debug, PartialEq)]
-pub(crate) struct Patch {
+pub struct Patch {
     /// Its corners.
     pub corners: Vec<Point>,
     /// The value.
@@ -32,7 +32,7 @@ pub(crate) struct Patch {
 
 /// A projectile at the instant of its release; from here it falls freely.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub(crate) struct Flight {
+pub struct Flight {
     /// Place of the release \[m\].
     pub position: Point,
     /// Velocity at the release \[m/s\].
@@ -43,7 +43,7 @@ pub(crate) struct Flight {
 
 /// One design in motion.
 #[derive(Clone, Debug, PartialEq)]
-pub(crate) struct Motion {
+pub struct Motion {
     /// What it is, such as `optimal design`.
     pub title: String,
     /// Bodies in the order of the problem file; the same for all designs.
@@ -60,7 +60,7 @@ pub(crate) struct Motion {
 
 /// What colours of patches mean.
 #[derive(Clone, Debug, PartialEq)]
-pub(crate) struct Coloured {
+pub struct Coloured {
     /// The largest stress of the whole run \[Pa\], which the scale covers.
     pub largest: f64,
     /// The kinds of stress.
@@ -75,7 +75,7 @@ impl Flight {
     /// does not point down.
     ///
     /// r(t) = r₀ + v₀ t − ½ g t² e_y for t from 0 to (v_y + √(v_y² + 2 g (y − y_g))) / g.
-    pub(crate) fn path(&self, ground: f64) -> Option<Vec<Point>> {
+    pub fn path(&self, ground: f64) -> Option<Vec<Point>> {
         let ([x, y], [vx, vy], g) = (self.position, self.velocity, self.gravity);
         let landing = (vy + (vy * vy + 2.0 * g * (y - ground)).sqrt()) / g;
         if !(g > 0.0 && y >= ground && landing.is_finite()) {

@@ -3,7 +3,7 @@
 use super::axis::Axis;
 use super::canvas::{Anchor, Canvas, PALETTE, Pixel};
 use super::panel::{BELOW, Key, Legend, Panel, room_left};
-use crate::report::{PrecisionOfMesh, ReportError};
+use crate::{PrecisionOfMesh, ReportError};
 use plotters::style::RGBColor;
 
 /// Width of the picture, and height of its frame \[px\].
@@ -29,7 +29,7 @@ struct Curve {
 ///
 /// # Errors
 /// [`ReportError::NothingToDraw`] if there is no difference to draw.
-pub(crate) fn mesh_precision(measured: &PrecisionOfMesh) -> Result<String, ReportError> {
+pub fn mesh_precision(measured: &PrecisionOfMesh) -> Result<String, ReportError> {
     let curves = curves(measured);
     if curves.is_empty() {
         return Err(ReportError::NothingToDraw {
@@ -85,7 +85,7 @@ fn curves(measured: &PrecisionOfMesh) -> Vec<Curve> {
         let of_gradient = k == count;
         let f = if of_gradient { measured.chosen } else { k };
         let name = measured.functions.get(f).cloned().unwrap_or_default();
-        let point = |row: &crate::report::MeshRow| {
+        let point = |row: &crate::MeshRow| {
             let error = measured.errors(row)?[k];
             let seconds = row.seconds
                 + if of_gradient {
@@ -113,7 +113,7 @@ fn curves(measured: &PrecisionOfMesh) -> Vec<Curve> {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::report::MeshRow;
+    use crate::MeshRow;
 
     fn measured() -> PrecisionOfMesh {
         let row = |cuts: usize| {

@@ -5,12 +5,12 @@ use super::canvas::{Anchor, BLACK, Canvas, GROUND, PALETTE};
 use super::connectors::{ConnectorKind, Point};
 use super::lapse::{Motion, draw_lapse, lapse_legend, stress_range};
 use super::panel::{BELOW, Key, Legend, Panel, room_left};
-use crate::report::ReportError;
+use crate::ReportError;
 use plotters::style::RGBColor;
 
 /// A barrier that the projectile must clear.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub(crate) struct Barrier {
+pub struct Barrier {
     /// Horizontal coordinate \[m\].
     pub distance: f64,
     /// Vertical coordinate of its top \[m\].
@@ -19,7 +19,7 @@ pub(crate) struct Barrier {
 
 /// The fixed scenery, and the names of the directions.
 #[derive(Clone, Debug, PartialEq)]
-pub(crate) struct Scenery {
+pub struct Scenery {
     /// Height of the ground \[m\], if a projectile lands on it.
     pub ground: Option<f64>,
     /// The barrier, if there is one.
@@ -40,7 +40,7 @@ const GAP: f64 = 20.0;
 ///
 /// # Errors
 /// [`ReportError::NothingToDraw`] if there is no outline with a finite point.
-pub(crate) fn motion(designs: &[Motion], scenery: &Scenery) -> Result<String, ReportError> {
+pub fn motion(designs: &[Motion], scenery: &Scenery) -> Result<String, ReportError> {
     let outlines = |design: &Motion| {
         let bodies = design.bodies.iter().flat_map(|body| &body.outlines);
         bodies.flatten().copied().collect::<Vec<Point>>()

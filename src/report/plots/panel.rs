@@ -25,7 +25,7 @@ pub(super) fn room_left<'a>(axes: impl IntoIterator<Item = &'a Axis>) -> f64 {
 
 impl Panel {
     /// The place of a value in the picture.
-    pub(crate) fn pixel(&self, x: f64, y: f64) -> Pixel {
+    pub fn pixel(&self, x: f64, y: f64) -> Pixel {
         (
             self.left + self.x.fraction(x) * self.width,
             self.top + (1.0 - self.y.fraction(y)) * self.height,
@@ -34,7 +34,7 @@ impl Panel {
 
     /// Frame, grid, ticks and labels. Numbers and label of the x axis are left out if another
     /// panel below shows them.
-    pub(crate) fn draw(&self, canvas: &mut Canvas, number_x: bool, number_y: bool) {
+    pub fn draw(&self, canvas: &mut Canvas, number_x: bool, number_y: bool) {
         let (left, top) = (self.left, self.top);
         let (right, bottom) = (left + self.width, top + self.height);
         for (value, text) in &self.x.ticks {
@@ -78,7 +78,7 @@ impl Panel {
 
     /// The parts of a curve that lie within the frame. Values that are not finite interrupt it;
     /// on a logarithmic axis, values below its floor are drawn on the floor.
-    pub(crate) fn within(&self, points: impl Iterator<Item = (f64, f64)>) -> Vec<Vec<Pixel>> {
+    pub fn within(&self, points: impl Iterator<Item = (f64, f64)>) -> Vec<Vec<Pixel>> {
         let mut parts: Vec<Vec<Pixel>> = vec![Vec::new()];
         let mut last: Option<Pixel> = None;
         for (x, y) in points {
@@ -205,7 +205,7 @@ pub(super) struct Legend {
 
 impl Legend {
     /// Fills rows of the given width \[px\].
-    pub(crate) fn new(entries: Vec<(Key, String)>, width: f64) -> Legend {
+    pub fn new(entries: Vec<(Key, String)>, width: f64) -> Legend {
         let mut rows: Vec<Vec<(Key, String, f64)>> = Vec::new();
         let mut x = f64::INFINITY;
         for (key, text) in entries {
@@ -229,12 +229,12 @@ impl Legend {
     }
 
     /// Height of all rows \[px\].
-    pub(crate) fn height(&self) -> f64 {
+    pub fn height(&self) -> f64 {
         ROW * self.rows.len() as f64
     }
 
     /// Draws the rows downwards from `top`.
-    pub(crate) fn draw(&self, canvas: &mut Canvas, left: f64, top: f64) {
+    pub fn draw(&self, canvas: &mut Canvas, left: f64, top: f64) {
         for (i, row) in self.rows.iter().enumerate() {
             let y = top + ROW * (i as f64 + 0.5);
             for (key, text, x) in row {

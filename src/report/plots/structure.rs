@@ -2,10 +2,10 @@
 
 use super::canvas::{Anchor, Canvas, INK, Pixel};
 use super::colours::colour;
-use crate::report::ReportError;
+use crate::ReportError;
 
 /// One view of a structure.
-pub(crate) struct StructureView {
+pub struct StructureView {
     /// What it shows.
     pub title: String,
     /// Quadrilaterals: corners \[m\] and the value of their colour.
@@ -22,7 +22,7 @@ pub(crate) struct StructureView {
 
 /// From where structures are seen: the axes to the right, up, and to the viewer.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub(crate) struct Camera {
+pub struct Camera {
     pub right: [f64; 3],
     pub up: [f64; 3],
     pub towards: [f64; 3],
@@ -30,7 +30,7 @@ pub(crate) struct Camera {
 
 impl Camera {
     /// A camera that looks along an axis.
-    pub(crate) fn along(right: [f64; 3], up: [f64; 3]) -> Self {
+    pub fn along(right: [f64; 3], up: [f64; 3]) -> Self {
         Self {
             right,
             up,
@@ -39,7 +39,7 @@ impl Camera {
     }
 
     /// A camera above and beside the axis that looks at a view.
-    pub(crate) fn oblique(right: [f64; 3], up: [f64; 3]) -> Self {
+    pub fn oblique(right: [f64; 3], up: [f64; 3]) -> Self {
         let towards = cross(right, up);
         let mix = |k: usize| 0.45 * right[k] + 0.55 * up[k] + 0.7 * towards[k];
         let towards = unit([mix(0), mix(1), mix(2)]);
@@ -80,10 +80,7 @@ const MARGIN: f64 = 14.0;
 ///
 /// # Errors
 /// If there is nothing to draw.
-pub(crate) fn structure(
-    rows: &[Vec<StructureView>],
-    camera: &Camera,
-) -> Result<String, ReportError> {
+pub fn structure(rows: &[Vec<StructureView>], camera: &Camera) -> Result<String, ReportError> {
     let columns = rows.iter().map(Vec::len).max().unwrap_or(0);
     if columns == 0 {
         return Err(ReportError::NothingToDraw {
@@ -193,7 +190,7 @@ fn legend(canvas: &mut Canvas, view: &StructureView, (left, top): Pixel) {
     for k in 0..=NUMBERS {
         let part = k as f64 / NUMBERS as f64;
         let y = bar + height * (1.0 - part);
-        let text = crate::report::number::significant(low + part * (high - low), 3);
+        let text = crate::number::significant(low + part * (high - low), 3);
         canvas.text((left + 17.0, y), &text, Anchor::Left);
     }
 }

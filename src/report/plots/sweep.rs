@@ -3,8 +3,8 @@
 use super::axis::Axis;
 use super::canvas::{Canvas, PALETTE};
 use super::panel::{BELOW, Key, Legend, Panel, room_left};
-use crate::report::ReportError;
-use crate::report::sweep::{Sweep, SweptOptimum};
+use crate::ReportError;
+use crate::sweep::{Sweep, SweptOptimum};
 
 const WIDTH: f64 = 640.0;
 const HEIGHT: f64 = 280.0;
@@ -14,7 +14,7 @@ const HEIGHT: f64 = 280.0;
 ///
 /// # Errors
 /// [`ReportError::NothingToDraw`] if no value is finite.
-pub(crate) fn sweep(found: &Sweep) -> Result<String, ReportError> {
+pub fn sweep(found: &Sweep) -> Result<String, ReportError> {
     let of = |converged: bool| -> Vec<(f64, f64)> {
         let point = |at: &SweptOptimum| (at.value, at.objective);
         let all = found.optima.iter().filter(|at| at.converged == converged);

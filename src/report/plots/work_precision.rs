@@ -3,7 +3,7 @@
 use super::axis::Axis;
 use super::canvas::{Anchor, Canvas, INK, PALETTE, Pixel};
 use super::panel::{BELOW, Key, Legend, Panel, room_left};
-use crate::report::{PrecisionRow, ReportError, WorkPrecision};
+use crate::{PrecisionRow, ReportError, WorkPrecision};
 use plotters::style::RGBColor;
 
 /// Width of a panel with its axis, and height of its frame \[px\].
@@ -40,7 +40,7 @@ struct Curve<'a> {
 ///
 /// # Errors
 /// [`ReportError::NothingToDraw`] if there are no rows.
-pub(crate) fn work_precision(measured: &WorkPrecision) -> Result<String, ReportError> {
+pub fn work_precision(measured: &WorkPrecision) -> Result<String, ReportError> {
     let curves = curves(&measured.rows);
     if curves.is_empty() {
         return Err(ReportError::NothingToDraw {

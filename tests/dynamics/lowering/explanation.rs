@@ -1,7 +1,7 @@
 //! The output of `optimize explain`.
 
 use super::*;
-use flexbody::driver;
+use flexbody_driver as driver;
 
 #[test]
 fn an_explanation_counts_what_is_left() {

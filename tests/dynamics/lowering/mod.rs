@@ -6,16 +6,18 @@ mod oblique;
 mod planes;
 mod points;
 mod reactions;
-use crate::tests::reference;
-use crate::tests::reference::documents::problem as parse;
+use crate::reference;
+use crate::reference::documents::problem as parse;
 mod unseen;
 mod welds;
 
-use flexbody::driver::Evaluated;
-use flexbody::integrate::{LinearSolver, MEMORY, Method, Samples, Settings, Spacing, simulate};
-use flexbody::lower::ViolatedCondition;
-use flexbody::problem::{Override, Problem};
-use flexbody::system::flexible::has_shells;
+use flexbody_driver::Evaluated;
+use flexbody_mechanics::integrate::{
+    LinearSolver, MEMORY, Method, Samples, Settings, Spacing, simulate,
+};
+use flexbody_mechanics::lower::ViolatedCondition;
+use flexbody_mechanics::system::flexible::has_shells;
+use flexbody_problem::{Override, Problem};
 use serde_json::Value;
 use std::path::{Path, PathBuf};
 
@@ -113,7 +115,7 @@ fn differences(problem: &Problem, settings: &Settings) -> [f64; 3] {
 /// Number of unknowns and of imposed rows of the reduced start of a problem.
 fn size(problem: &Problem) -> (usize, usize) {
     let model = problem.scene::<f64>(&problem.start()).model;
-    let numbering = flexbody::system::Numbering::new(&model);
+    let numbering = flexbody_mechanics::system::Numbering::new(&model);
     let imposed = model.joints.iter().map(|joint| joint.imposed().count());
     (numbering.unknowns(), imposed.sum())
 }
@@ -121,7 +123,7 @@ fn size(problem: &Problem) -> (usize, usize) {
 const RADAU: Method = Method::Radau { stages: 3 };
 const BDF: Method = Method::Bdf {
     order: 2,
-    start: flexbody::integrate::Start::Radau,
+    start: flexbody_mechanics::integrate::Start::Radau,
 };
 
 /// The problems, whether they are planar, the methods, and the limits of round-off. The squeezer
@@ -201,7 +203,7 @@ fn every_problem_moves_the_same_lowered() {
         let mut problem = load(&format!("problems/{name}.json"), short);
         if problem.scene::<f64>(&problem.start()).until.is_some() {
             // Up to the event, as the run.
-            let seen = flexbody::driver::simulate(&problem, &problem.start()).expect("a run");
+            let seen = flexbody_driver::simulate(&problem, &problem.start()).expect("a run");
             let end = format!("/simulation/duration={}", seen.at.run.duration);
             problem = load(&format!("problems/{name}.json"), &[&end]);
         }

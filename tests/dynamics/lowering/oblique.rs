@@ -2,11 +2,11 @@
 //! written, and a plane that would lose one is not used.
 
 use super::{differences, is_planar, obstacle, parse, run, settings};
-use crate::tests::reference::models::Numbers;
+use crate::reference::models::Numbers;
 
-use flexbody::integrate::{Method, Spacing};
-use flexbody::math::{Mat3, Vec3, rotation};
-use flexbody::problem::Problem;
+use flexbody_mathematics::math::{Mat3, Vec3, rotation};
+use flexbody_mechanics::integrate::{Method, Spacing};
+use flexbody_problem::Problem;
 use serde_json::Value;
 
 /// A rotation of space, by axis and angle.

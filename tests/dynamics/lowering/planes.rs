@@ -1,10 +1,10 @@
 //! Scenes that move in a plane.
 
 use super::*;
-use flexbody::driver;
-use flexbody::lower::Plane;
-use flexbody::math::{Mat3, Vec3, rotation};
-use flexbody::model::{Axes, LoadKind, Mobility, Model};
+use flexbody_driver as driver;
+use flexbody_mathematics::math::{Mat3, Vec3, rotation};
+use flexbody_mechanics::lower::Plane;
+use flexbody_mechanics::model::{Axes, LoadKind, Mobility, Model};
 
 /// In the plane, the trebuchet of five bodies has 15 unknowns and 10 rows, against 30 and 21 in
 /// space.
@@ -16,7 +16,7 @@ fn the_trebuchet_is_planar_and_the_triple_pendulum_is_not() {
     let mut lowered = model.clone();
     plane.apply(&mut lowered);
     let size = |model: &Model<f64>| {
-        let numbering = flexbody::system::Numbering::new(model);
+        let numbering = flexbody_mechanics::system::Numbering::new(model);
         (numbering.unknowns(), numbering.constraints())
     };
     assert_eq!(size(&model), (30, 21));
@@ -131,7 +131,7 @@ fn turned(model: &Model<f64>, r: &Mat3<f64>, p: &[f64; 4]) -> Model<f64> {
             _ => {}
         }
     }
-    flexbody::system::redundancy::leave_out(&mut model);
+    flexbody_mechanics::system::redundancy::leave_out(&mut model);
     model
 }
 

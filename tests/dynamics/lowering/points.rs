@@ -1,8 +1,8 @@
 //! Bodies that do not rotate.
 
 use super::*;
-use flexbody::driver;
-use flexbody::model::Mobility;
+use flexbody_driver as driver;
+use flexbody_mechanics::model::Mobility;
 
 /// A ball at the end of a spatial double pendulum.
 fn ball_on_a_double_pendulum(at: Value, function: Value) -> Value {

@@ -2,10 +2,10 @@
 //! made give the same values and gradients as the scene as written.
 
 use super::{differences, is_planar, obstacle, parse, run, settings, unlowered};
-use crate::tests::reference::models::Numbers;
+use crate::reference::models::Numbers;
 
-use flexbody::integrate::{Method, Spacing};
-use flexbody::problem::Problem;
+use flexbody_mechanics::integrate::{Method, Spacing};
+use flexbody_problem::Problem;
 use serde_json::Value;
 
 /// A chain of bars in the plane across z that hangs from a block on ground. `welded` bars are one with the
@@ -234,6 +234,6 @@ fn what_hinges_share_is_refused_and_the_rest_is_right() {
     shared = parse(&document);
     let at = run(&shared, &settings);
     assert!(at.function(0).value.is_nan());
-    let told = flexbody::driver::not_finite::value(&shared, &at, 0, f64::NAN);
+    let told = flexbody_driver::not_finite::value(&shared, &at, 0, f64::NAN);
     assert!(told.contains("shares it with others"), "{told}");
 }

@@ -1,8 +1,8 @@
 //! Parts on which no requested function depends are not simulated.
 
 use super::*;
-use flexbody::driver::integration::Integration;
-use flexbody::driver::{self, KnownEvaluations};
+use flexbody_driver::integration::Integration;
+use flexbody_driver::{self as driver, KnownEvaluations};
 use serde_json::Map;
 use std::ops::ControlFlow;
 
@@ -175,7 +175,7 @@ fn an_optimisation_sees_one_of_two_machines() {
     assert_eq!(focused.function_names, one.function_names);
     let [a, b] = [&focused, &one].map(|problem| {
         let log = KnownEvaluations::new(Vec::new(), |_| ());
-        let mut progress = |_: &flexbody::report::History| ControlFlow::Continue(());
+        let mut progress = |_: &flexbody_report::History| ControlFlow::Continue(());
         driver::optimise(problem, "test.json", None, log, &mut progress).expect("an objective")
     });
     assert_eq!(a.optimum.counts, b.optimum.counts);

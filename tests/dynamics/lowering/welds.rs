@@ -1,7 +1,7 @@
 //! Bodies that are welded to ground, or to each other.
 
 use super::*;
-use flexbody::driver;
+use flexbody_driver as driver;
 
 /// A stand that is welded to ground, with a bracket welded to it, carries the trebuchet.
 #[test]

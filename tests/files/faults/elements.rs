@@ -1,10 +1,10 @@
 //! Malformed files with bodies of finite elements: every value replaced by others, and what such bodies may not be.
 
 use super::pointers;
-use crate::tests::files::element_parts::stiffened;
-use crate::tests::files::finite_elements::plates;
-use crate::tests::reference::documents::read;
-use flexbody::problem::Problem;
+use crate::element_parts::stiffened;
+use crate::reference::documents::plates;
+use crate::reference::documents::read;
+use flexbody_problem::Problem;
 use serde_json::Value;
 
 fn two_plates() -> Value {

@@ -1,7 +1,7 @@
 //! Malformed problem files: the exact text that a user reads, with all faults of a file at once.
 
-use crate::tests::reference::documents::children;
-use flexbody::problem::{Override, Problem};
+use crate::reference::documents::children;
+use flexbody_problem::{Override, Problem};
 use serde_json::Value;
 use std::path::Path;
 

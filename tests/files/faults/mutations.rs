@@ -1,7 +1,7 @@
 //! Random changes of files with structures and flexible bodies.
 
-use crate::tests::reference::mutations::{Outcome, Random, mutated, sound, tried};
-use flexbody::problem::Problem;
+use crate::reference::mutations::{Outcome, Random, mutated, sound, tried};
+use flexbody_problem::Problem;
 
 /// The files are sound before they are changed; then each change is refused with a text, fails with a text, or is
 /// analysed. Nothing panics.

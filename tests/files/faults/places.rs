@@ -2,8 +2,8 @@
 //! the file with the moved place is refused, and so is the variable.
 
 use super::super::modal::{modal, pendulum};
-use crate::tests::files::finite_elements::plates;
-use flexbody::problem::Problem;
+use crate::reference::documents::plates;
+use flexbody_problem::Problem;
 use serde_json::Value;
 
 fn told(file: &Value) -> String {

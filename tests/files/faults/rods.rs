@@ -1,7 +1,7 @@
 //! Thin rods whose joints leave their own spin free: the message names the rod and what it lacks, however far the
 //! placement is from where the joints close.
 
-use flexbody::problem::Problem;
+use flexbody_problem::Problem;
 use serde_json::Value;
 use std::f64::consts::FRAC_PI_2;
 

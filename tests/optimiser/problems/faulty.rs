@@ -1,6 +1,6 @@
 //! Programs whose evaluation fails.
 
-use flexbody::optimiser::{Evaluation, EvaluationFailure, Gradients, Nlp};
+use flexbody_optimiser::{Evaluation, EvaluationFailure, Gradients, Nlp};
 
 /// How an evaluation fails.
 #[derive(Clone, Copy, Debug, PartialEq)]

@@ -1,6 +1,6 @@
 //! Test problems with known optima.
 
-/// Methods of [`flexbody::optimiser::Nlp`] that the field `inner` answers.
+/// Methods of [`flexbody_optimiser::Nlp`] that the field `inner` answers.
 macro_rules! inner {
     ($($method:ident),*) => { $($crate::problems::inner!(@ $method);)* };
     (@ variables) => {

@@ -1,6 +1,6 @@
 //! A test problem, given by formulas in dual numbers.
 
-use flexbody::optimiser::{Evaluation, EvaluationFailure, Gradients, Jacobian, Nlp};
+use flexbody_optimiser::{Evaluation, EvaluationFailure, Gradients, Jacobian, Nlp};
 
 use super::dual::Dual;
 

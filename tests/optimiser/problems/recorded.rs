@@ -1,6 +1,6 @@
 //! Records of the requests to a program.
 
-use flexbody::optimiser::{Evaluation, EvaluationFailure, Gradients, Nlp};
+use flexbody_optimiser::{Evaluation, EvaluationFailure, Gradients, Nlp};
 
 /// A program that records every requested design.
 pub struct Recorded<N: Nlp> {

@@ -1,7 +1,7 @@
 //! Residuals of the optimality conditions at the end of a run, computed only from the problem and
 //! the reported multipliers.
 
-use flexbody::optimiser::{Nlp, Outcome};
+use flexbody_optimiser::{Nlp, Outcome};
 
 /// Residuals in the units of the problem; those of forces and objective are divided by the larger
 /// of the given unit and ‖∇f‖∞ or |f|.

@@ -1,6 +1,6 @@
 //! A program whose objective is given in another unit.
 
-use flexbody::optimiser::{Evaluation, EvaluationFailure, Gradients, Nlp};
+use flexbody_optimiser::{Evaluation, EvaluationFailure, Gradients, Nlp};
 
 use crate::problems::problem::Problem;
 

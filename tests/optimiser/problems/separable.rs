@@ -1,6 +1,6 @@
 //! A program of any size: a chain of springs in a box, with two full rows or with sparse rows.
 
-use flexbody::optimiser::{Evaluation, EvaluationFailure, Gradients, Jacobian, Nlp};
+use flexbody_optimiser::{Evaluation, EvaluationFailure, Gradients, Jacobian, Nlp};
 
 #[derive(Clone, Copy)]
 pub enum Rows {

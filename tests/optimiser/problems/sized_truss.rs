@@ -5,7 +5,7 @@
 //! Haug & Arora (1979), *Applied Optimal Design* (10, 25, 72 and 200 bars); the weights are those of
 //! Kaveh & Talatahari (2009), Computers & Structures 87, but for rounding of the areas.
 
-use flexbody::optimiser::{Evaluation, EvaluationFailure, Gradients, Jacobian, Nlp};
+use flexbody_optimiser::{Evaluation, EvaluationFailure, Gradients, Jacobian, Nlp};
 use nalgebra::{Cholesky, DMatrix, DVector};
 
 /// Units of length, force and mass in an inch, a pound-force and a pound.

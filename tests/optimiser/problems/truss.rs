@@ -2,7 +2,7 @@
 
 use clarabel::algebra::CscMatrix;
 use clarabel::qdldl::QDLDLFactorisation;
-use flexbody::optimiser::{Curvature, Evaluation, EvaluationFailure, Gradients, Jacobian, Nlp};
+use flexbody_optimiser::{Curvature, Evaluation, EvaluationFailure, Gradients, Jacobian, Nlp};
 
 /// Minimise the compliance pᵀu with K(x) u = p over the areas x of all bars; their volume is
 /// given. The grid is fixed on its left edge and loaded at the middle of its right edge.

@@ -1,0 +1,431 @@
+//! Functions of interest in a file.
+
+use super::measured::{
+    AngularMomentum, Bound, JointReaction, JointSlide, LargestFibreStress, LargestSectionForce,
+    OfSpring, SectionComponent, SectionPlace,
+};
+use super::mechanics::Point;
+use super::statics::{
+    CentreOfMass, Displacement, Frequency, LowestFrequency, MomentOfInertia, OfCase,
+    ReactionMoment, StaticReaction, Stress,
+};
+use crate::quantity::{Quantity, Vector};
+use schemars::JsonSchema;
+use serde::Deserialize;
+
+/// A function of interest: a quantity at an instant, reduced over the run, or a clearance.
+#[derive(Clone, Debug, Deserialize, JsonSchema)]
+#[serde(rename_all = "snake_case", deny_unknown_fields)]
+pub enum Function {
+    /// Kreisselmeier–Steinhauser function, a smooth bound of the maximum over the run.
+    Ks(Ks),
+    /// Induced exponential, a smooth mean near the maximum over the run.
+    InducedExponential(Aggregate),
+    /// Integral over the run.
+    Integral(Instant),
+    /// Value at the end of the run.
+    Final(Instant),
+    /// Height of a flight path above the top of a barrier [m].
+    Clearance(Clearance),
+    /// Duration of the run; with `until`, the time of the event [s].
+    Duration,
+    /// Mass of all bodies, or of all structures [kg].
+    Mass,
+    /// Coordinate of the centre of mass of all structures [m].
+    CentreOfMass(CentreOfMass),
+    /// Moment of inertia of all structures about an axis through their centre of mass [kg m²].
+    MomentOfInertia(MomentOfInertia),
+    /// Strain energy of a load case [J].
+    StrainEnergy(OfCase),
+    /// Work of the loads of a case in its displacements [J].
+    Compliance(OfCase),
+    /// Mean displacement of a set of nodes [m].
+    Displacement(Displacement),
+    /// Force of the supports on a set of nodes [N].
+    Reaction(StaticReaction),
+    /// Moment of the supports on a set of nodes [N m].
+    ReactionMoment(ReactionMoment),
+    /// Aggregate of von Mises stress by yield stress.
+    VonMises(Stress),
+    /// A natural frequency [Hz].
+    Frequency(Frequency),
+    /// Smooth lower bound of the natural frequencies [Hz].
+    LowestFrequency(LowestFrequency),
+}
+
+/// A function of a motion.
+pub enum OfMotion<'a> {
+    Ks(&'a Ks),
+    InducedExponential(&'a Aggregate),
+    Integral(&'a Instant),
+    Final(&'a Instant),
+    Clearance(&'a Clearance),
+    Duration,
+    Mass,
+}
+
+impl Function {
+    /// The stress of structures, if it is one.
+    pub fn stress(&self) -> Option<&Stress> {
+        match self {
+            Self::VonMises(stress) => Some(stress),
+            _ => None,
+        }
+    }
+
+    /// The function, if it is one of a motion and not of structures.
+    pub fn of_motion(&self) -> Option<OfMotion<'_>> {
+        match self {
+            Self::Ks(own) => Some(OfMotion::Ks(own)),
+            Self::InducedExponential(own) => Some(OfMotion::InducedExponential(own)),
+            Self::Integral(own) => Some(OfMotion::Integral(own)),
+            Self::Final(own) => Some(OfMotion::Final(own)),
+            Self::Clearance(own) => Some(OfMotion::Clearance(own)),
+            Self::Duration => Some(OfMotion::Duration),
+            Self::Mass => Some(OfMotion::Mass),
+            Self::CentreOfMass(_)
+            | Self::MomentOfInertia(_)
+            | Self::StrainEnergy(_)
+            | Self::Compliance(_)
+            | Self::Displacement(_)
+            | Self::Reaction(_)
+            | Self::ReactionMoment(_)
+            | Self::VonMises(_)
+            | Self::Frequency(_)
+            | Self::LowestFrequency(_) => None,
+        }
+    }
+}
+
+/// Aggregated quantity, sharpness, and side of the maximum.
+#[derive(Clone, Debug, Deserialize, JsonSchema)]
+#[serde(deny_unknown_fields)]
+pub struct Ks {
+    /// Aggregation parameter in 1/unit of the quantity; larger is closer to the maximum.
+    #[schemars(extend(
+        "unit" = "1/unit of the quantity",
+        "exclusiveMinimum" = 0,
+        "design_variable" = "an aggregation parameter says what is asked, not what is built"
+    ))]
+    pub rho: f64,
+    /// "below" (default): never above the true maximum. "above": never below it, as an upper limit
+    /// needs.
+    pub bound: Option<Bound>,
+    /// The quantity.
+    pub of: Instant,
+}
+
+/// Aggregated quantity and sharpness.
+#[derive(Clone, Debug, Deserialize, JsonSchema)]
+#[serde(deny_unknown_fields)]
+pub struct Aggregate {
+    /// Aggregation parameter in 1/unit of the quantity; larger is closer to the maximum.
+    #[schemars(extend(
+        "unit" = "1/unit of the quantity",
+        "exclusiveMinimum" = 0,
+        "design_variable" = "an aggregation parameter says what is asked, not what is built"
+    ))]
+    pub rho: f64,
+    /// The quantity.
+    pub of: Instant,
+}
+
+/// A quantity at an instant.
+#[derive(Clone, Debug, Deserialize, JsonSchema)]
+#[serde(rename_all = "snake_case", deny_unknown_fields)]
+pub enum Instant {
+    /// Component of a point's position [m].
+    Position(Component),
+    /// Component of a point's velocity [m/s].
+    Velocity(Component),
+    /// Component of a point's acceleration [m/s²].
+    Acceleration(Component),
+    /// Speed of a point [m/s].
+    Speed(Moving),
+    /// Square of the speed of a point [m²/s²], which is smooth at rest too.
+    SpeedSquared(Moving),
+    /// Component of the angular velocity of a body [rad/s]; of a beam, that of its frame.
+    AngularVelocity(Spinning),
+    /// Component of the linear momentum of the whole scene [kg m/s].
+    Momentum(Momentum),
+    /// Component of the angular momentum of the whole scene about a fixed point [kg m²/s].
+    AngularMomentum(AngularMomentum),
+    /// Energy of the whole scene [J].
+    Energy(Energy),
+    /// Rotation of a body about an axis [rad], counted over whole turns.
+    Rotation(Rotation),
+    /// Angle of a joint [rad] as in drives and torsion springs, counted over whole turns.
+    Angle(JointAngle),
+    /// Displacement of a joint along its axis [m].
+    Slide(JointSlide),
+    /// Component of the force by which a joint acts on a body [N].
+    JointForce(JointReaction),
+    /// Component of the moment by which a joint acts on a body [N m], that of its drive included.
+    JointMoment(JointReaction),
+    /// Distance of the points of a spring [m].
+    SpringLength(OfSpring),
+    /// Force by which a spring pulls its points together [N], damping included.
+    SpringForce(OfSpring),
+    /// Torque by which a torsion spring turns its joint back [N m], damping included.
+    SpringTorque(OfSpring),
+    /// Range of a projectile that is released at this instant [m].
+    Range(Range),
+    /// Von Mises stress by yield stress of a body of shells, aggregated over both faces of their Gauss points.
+    VonMises(ShellStress),
+    /// Displacement of a point of a beam or of shells from where it is in the undeformed body [m].
+    ElasticDisplacement(ElasticDisplacement),
+    /// Strain energy of a beam or of shells [J].
+    StrainEnergy(OfBeam),
+    /// Force [N] or moment [N m] in a section of a beam.
+    SectionForce(SectionForce),
+    /// Stress of bending and stretch along a fibre of a beam [Pa].
+    FibreStress(FibreStress),
+    /// Largest force [N] or moment [N m] of several sections of a beam, by a smooth maximum.
+    LargestSectionForce(LargestSectionForce),
+    /// Largest stress of bending and stretch of several sections and fibres of a beam, by a smooth maximum [Pa].
+    LargestFibreStress(LargestFibreStress),
+}
+
+/// Stress of a body of shells.
+#[derive(Clone, Debug, Deserialize, JsonSchema)]
+#[serde(deny_unknown_fields)]
+pub struct ShellStress {
+    /// The body.
+    pub body: String,
+    /// Aggregation parameter over the points; larger is closer to the maximum.
+    #[schemars(extend(
+        "unit" = "1",
+        "exclusiveMinimum" = 0,
+        "design_variable" = "an aggregation parameter says what is asked, not what is built"
+    ))]
+    pub rho: f64,
+    /// Name of a set of elements of its structure, default all.
+    pub elements: Option<String>,
+}
+
+/// A beam.
+#[derive(Clone, Debug, Deserialize, JsonSchema)]
+#[serde(deny_unknown_fields)]
+pub struct OfBeam {
+    /// The beam.
+    pub body: String,
+}
+
+/// A point of a beam and a direction.
+#[derive(Clone, Debug, Deserialize, JsonSchema)]
+#[serde(deny_unknown_fields)]
+pub struct ElasticDisplacement {
+    /// The beam.
+    pub body: String,
+    /// Its point, by name or in body axes.
+    pub point: Point,
+    /// Direction in body axes, used as it is given: a unit vector gives a component.
+    #[schemars(extend("unit" = "1"))]
+    pub direction: Vector,
+}
+
+/// A force or moment in a section.
+#[derive(Clone, Debug, Deserialize, JsonSchema)]
+#[serde(deny_unknown_fields)]
+pub struct SectionForce {
+    /// The beam, or a body of elements that has beams.
+    pub body: String,
+    /// Of a body of elements: the name of a set of its beams, or of a stiffener; default all its beams.
+    pub beams: Option<String>,
+    /// Where the section is.
+    pub station: SectionPlace,
+    /// Which of its forces and moments.
+    pub component: SectionComponent,
+}
+
+/// Stress along a fibre.
+#[derive(Clone, Debug, Deserialize, JsonSchema)]
+#[serde(deny_unknown_fields)]
+pub struct FibreStress {
+    /// The beam, or a body of elements that has beams.
+    pub body: String,
+    /// Of a body of elements: the name of a set of its beams, or of a stiffener; default all its beams.
+    pub beams: Option<String>,
+    /// Where the section is.
+    pub station: SectionPlace,
+    /// Where the fibre is in it along y and z, in parts of half the section's size: [1, 0] is outermost
+    /// along y.
+    #[schemars(extend(
+        "unit" = "1",
+        "design_variable" = "a fibre says what is asked, not what is built"
+    ))]
+    pub fibre: [f64; 2],
+}
+
+/// A point of a body and a direction.
+#[derive(Clone, Debug, Deserialize, JsonSchema)]
+#[serde(deny_unknown_fields)]
+pub struct Component {
+    /// The body.
+    pub body: String,
+    /// Its point, by name or in body axes; default the centre of mass.
+    pub point: Option<Point>,
+    /// Direction in ground axes. It is not normalised; a unit vector gives a component.
+    #[schemars(extend("unit" = "1"))]
+    pub direction: Vector,
+}
+
+/// A body and a direction.
+#[derive(Clone, Debug, Deserialize, JsonSchema)]
+#[serde(deny_unknown_fields)]
+pub struct Spinning {
+    /// The body.
+    pub body: String,
+    /// Direction in ground axes. It is not normalised; a unit vector gives a component.
+    #[schemars(extend("unit" = "1"))]
+    pub direction: Vector,
+}
+
+/// A direction.
+#[derive(Clone, Debug, Deserialize, JsonSchema)]
+#[serde(deny_unknown_fields)]
+pub struct Momentum {
+    /// Direction in ground axes. It is not normalised; a unit vector gives a component.
+    #[schemars(extend("unit" = "1"))]
+    pub direction: Vector,
+}
+
+/// A point of a body.
+#[derive(Clone, Debug, Deserialize, JsonSchema)]
+#[serde(deny_unknown_fields)]
+pub struct Moving {
+    /// The body.
+    pub body: String,
+    /// Its point, by name or in body axes; default the centre of mass.
+    pub point: Option<Point>,
+}
+
+/// Kind of energy.
+#[derive(Clone, Copy, Debug, Deserialize, JsonSchema)]
+#[serde(rename_all = "snake_case")]
+pub enum Energy {
+    /// Kinetic energy.
+    Kinetic,
+    /// Potential energy, zero with the centre of mass at the origin.
+    Potential,
+    /// Their sum.
+    Total,
+}
+
+/// A body and an axis.
+#[derive(Clone, Debug, Deserialize, JsonSchema)]
+#[serde(deny_unknown_fields)]
+pub struct Rotation {
+    /// The body.
+    pub body: String,
+    /// Axis in ground axes as the bodies are placed, of any length but zero. It is fixed in the
+    /// body that the rotation is relative to.
+    #[schemars(extend("unit" = "1"))]
+    pub axis: Vector,
+    /// The body that the rotation is relative to, default "ground".
+    pub relative_to: Option<String>,
+    /// Zero of the rotation, default "axes".
+    pub from: Option<CountedFrom>,
+}
+
+/// Zero of a rotation.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Deserialize, JsonSchema)]
+#[serde(rename_all = "snake_case")]
+pub enum CountedFrom {
+    /// The axes of the body are parallel to those of the other body, or of ground.
+    #[default]
+    Axes,
+    /// The bodies are as placed.
+    Placement,
+}
+
+/// A joint whose angle is measured.
+#[derive(Clone, Debug, Deserialize, JsonSchema)]
+#[serde(deny_unknown_fields)]
+pub struct JointAngle {
+    /// Name of a revolute, planar or cylindrical joint. The angle is that of its first body
+    /// relative to the second (ground counts as the second) about the axis, from the placement.
+    pub joint: String,
+}
+
+/// A projectile and how its range is measured. Up is against gravity.
+#[derive(Clone, Debug, Deserialize, JsonSchema)]
+#[serde(deny_unknown_fields)]
+pub struct Range {
+    /// The body that is thrown.
+    pub body: String,
+    /// Its point that flies, by name or in body axes; default the centre of mass.
+    pub point: Option<Point>,
+    /// Horizontal direction of the throw in ground axes, default [1, 0, 0].
+    #[schemars(extend("unit" = "1"))]
+    pub direction: Option<Vector>,
+    /// Height of the ground where the projectile lands, default 0.
+    #[schemars(extend("unit" = "m"))]
+    pub ground: Option<Quantity>,
+    /// Gate that excludes later turns of a sling from the range.
+    pub gate: Option<Gate>,
+}
+
+/// A smooth gate on a rotation: the range counts only while the rotation is above (or below) a
+/// limit. Give `body` and `axis`, or `joint`; and one of `above` and `below`.
+#[derive(Clone, Debug, Deserialize, JsonSchema)]
+#[serde(deny_unknown_fields)]
+pub struct Gate {
+    /// The body of the rotation.
+    pub body: Option<String>,
+    /// Axis of the rotation in ground axes as the bodies are placed, of any length but zero.
+    #[schemars(extend(
+        "unit" = "1",
+        "design_variable" = "a gate says what is asked, not what is built"
+    ))]
+    pub axis: Option<[f64; 3]>,
+    /// The body that the rotation is relative to, default "ground".
+    pub relative_to: Option<String>,
+    /// Zero of the rotation, default "axes".
+    pub from: Option<CountedFrom>,
+    /// Name of a revolute, planar or cylindrical joint whose angle is used instead of the rotation
+    /// of a body.
+    pub joint: Option<String>,
+    /// The gate is open above this rotation.
+    #[schemars(extend(
+        "unit" = "rad",
+        "design_variable" = "a gate says what is asked, not what is built"
+    ))]
+    pub above: Option<f64>,
+    /// The gate is open below this rotation.
+    #[schemars(extend(
+        "unit" = "rad",
+        "design_variable" = "a gate says what is asked, not what is built"
+    ))]
+    pub below: Option<f64>,
+    /// Width of the transition.
+    #[schemars(extend(
+        "unit" = "rad",
+        "exclusiveMinimum" = 0,
+        "design_variable" = "a gate says what is asked, not what is built"
+    ))]
+    pub width: f64,
+}
+
+/// Height of a projectile's flight path above the top of a barrier.
+#[derive(Clone, Debug, Deserialize, JsonSchema)]
+#[serde(deny_unknown_fields)]
+pub struct Clearance {
+    /// Name of the range function with the release: the final state of a `final` one, the weighted
+    /// mean state of a `ks` or an `induced_exponential` one.
+    pub release: String,
+    /// The barrier.
+    pub barrier: Barrier,
+}
+
+/// A barrier across the direction of flight.
+#[derive(Clone, Debug, Deserialize, JsonSchema)]
+#[serde(deny_unknown_fields)]
+pub struct Barrier {
+    /// Position along the direction of flight, from the origin.
+    #[schemars(extend("unit" = "m"))]
+    pub distance: Quantity,
+    /// Height of its top above the origin.
+    #[schemars(extend("unit" = "m"))]
+    pub top: Quantity,
+}

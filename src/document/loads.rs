@@ -1,0 +1,363 @@
+//! Loads in a file.
+
+use super::joints::Ends;
+use super::mechanics::Point;
+use crate::quantity::{Quantity, Vector};
+use flexbody_mechanics::model;
+use schemars::JsonSchema;
+use serde::Deserialize;
+
+/// A force, torque, spring, damper or friction.
+#[derive(Clone, Debug, Deserialize, JsonSchema)]
+#[serde(rename_all = "snake_case", deny_unknown_fields)]
+pub enum Load {
+    /// A force at a point of a body.
+    Force(Force),
+    /// A torque on a body.
+    Torque(Torque),
+    /// A spring with a damper between points of two bodies. The tension is k x + k3 x³ + c l̇, with
+    /// x = l − l0.
+    Spring(Spring),
+    /// A spring with a damper about the axis of a revolute or planar joint.
+    TorsionSpring(TorsionSpring),
+    /// Viscous damping in a joint.
+    Damping(Damping),
+    /// Coulomb friction in a joint: size times tanh(rate / width).
+    Friction(Friction),
+    /// A pressure on shells of a body of `elements`, along the normals of the deformed surface.
+    Pressure(Pressure),
+    /// A force per area on shells of a body of `elements`, in a fixed direction.
+    Area(AreaForce),
+    /// A force per length on edges of shells of a body of `elements`, in a fixed direction.
+    Edge(EdgeForce),
+    /// A force per length on beams of a body of `elements`, in a fixed direction.
+    Line(LineForce),
+}
+
+/// A force at a point of a body.
+#[derive(Clone, Debug, Deserialize, JsonSchema)]
+#[serde(deny_unknown_fields)]
+pub struct Force {
+    /// The body.
+    pub body: String,
+    /// Point of application, by name or in body axes; default the centre of mass.
+    pub point: Option<Point>,
+    /// Point of application in ground coordinates at the start, instead of `point`.
+    #[schemars(extend("unit" = "m"))]
+    pub at: Option<Vector>,
+    /// Direction, of any length but zero.
+    #[schemars(extend("unit" = "1"))]
+    pub direction: Vector,
+    /// Axes in which the direction is given and fixed, default ground.
+    #[serde(default)]
+    pub axes: Axes,
+    /// Magnitude: a number, or a function of time.
+    pub magnitude: ForceInTime,
+}
+
+/// A torque on a body.
+#[derive(Clone, Debug, Deserialize, JsonSchema)]
+#[serde(deny_unknown_fields)]
+pub struct Torque {
+    /// The body.
+    pub body: String,
+    /// Of a beam: the point whose section it turns, by name or in body axes.
+    pub point: Option<Point>,
+    /// Direction, of any length but zero.
+    #[schemars(extend("unit" = "1"))]
+    pub direction: Vector,
+    /// Axes in which the direction is given and fixed, default ground.
+    #[serde(default)]
+    pub axes: Axes,
+    /// Magnitude: a number, or a function of time.
+    pub magnitude: TorqueInTime,
+}
+
+/// Axes in which a direction is fixed.
+#[derive(Clone, Copy, Debug, Default, Deserialize, JsonSchema)]
+#[serde(rename_all = "snake_case")]
+pub enum Axes {
+    /// Ground axes.
+    #[default]
+    Ground,
+    /// Axes of the loaded body.
+    Body,
+}
+
+/// Interpolation between the values of a table.
+#[derive(Clone, Copy, Debug, Deserialize, JsonSchema)]
+#[serde(rename_all = "snake_case")]
+pub enum Interpolation {
+    /// Straight lines. Those of a motion are rounded at their ends, so accelerations stay finite.
+    Linear,
+    /// Smooth without overshoot.
+    Monotone,
+    /// As smooth as the values. It may overshoot.
+    Spline,
+}
+
+impl Interpolation {
+    /// The same interpolation in the model; default monotone.
+    pub fn of(written: Option<Self>) -> model::Interpolation {
+        match written {
+            Some(Self::Linear) => model::Interpolation::Linear,
+            Some(Self::Spline) => model::Interpolation::Spline,
+            Some(Self::Monotone) | None => model::Interpolation::Monotone,
+        }
+    }
+}
+
+/// A magnitude in its unit, and how it may vary with time.
+macro_rules! time_functions {
+    ($course:ident, $varying:ident, $what:literal, $unit:literal) => {
+        #[doc = concat!("Magnitude of a ", $what, ".")]
+        #[derive(Clone, Debug, Deserialize, JsonSchema)]
+        #[serde(untagged)]
+        pub enum $course {
+            /// The same at all times.
+            #[schemars(extend("unit" = $unit))]
+            Constant(Quantity),
+            /// A function of time.
+            Varying($varying),
+        }
+
+        #[doc = concat!("Function of time: a ", $what, ".")]
+        #[derive(Clone, Debug, Deserialize, JsonSchema)]
+        #[serde(rename_all = "snake_case", deny_unknown_fields)]
+        pub enum $varying {
+            /// amplitude · sin(2π frequency t + phase).
+            Harmonic {
+                /// Amplitude.
+                #[schemars(extend("unit" = $unit))]
+                amplitude: Quantity,
+                /// Frequency.
+                #[schemars(extend("unit" = "Hz"))]
+                frequency: Quantity,
+                /// Phase at t = 0, default 0.
+                #[serde(default = "nothing")]
+                #[schemars(extend("unit" = "rad"))]
+                phase: Quantity,
+            },
+            /// Interpolation between values, constant beyond both ends.
+            Table {
+                /// Instants, increasing.
+                #[schemars(extend(
+                    "unit" = "s",
+                    "design_variable" = "the instants of a table keep their order; design its values"
+                ))]
+                times: Vec<f64>,
+                /// Value at each instant.
+                #[schemars(extend("unit" = $unit))]
+                values: Vec<Quantity>,
+                /// Interpolation between the values, default monotone.
+                interpolation: Option<Interpolation>,
+            },
+        }
+
+        impl $course {
+            /// The time function without its unit.
+            pub fn parts(&self) -> TimeFunction<'_> {
+                match self {
+                    $course::Constant(value) => TimeFunction::Constant(value),
+                    $course::Varying($varying::Harmonic {
+                        amplitude,
+                        frequency,
+                        phase,
+                    }) => TimeFunction::Harmonic([amplitude, frequency, phase]),
+                    $course::Varying($varying::Table {
+                        times,
+                        values,
+                        interpolation,
+                    }) => TimeFunction::Table(times, values, *interpolation),
+                }
+            }
+        }
+    };
+}
+
+time_functions!(ForceInTime, VaryingForce, "force", "N");
+time_functions!(TorqueInTime, VaryingTorque, "torque", "N m");
+time_functions!(PressureInTime, VaryingPressure, "pressure", "Pa");
+time_functions!(LineForceInTime, VaryingLineForce, "force per length", "N/m");
+
+/// A time function without its unit.
+pub enum TimeFunction<'a> {
+    /// The same at all times.
+    Constant(&'a Quantity),
+    /// Amplitude, frequency and phase.
+    Harmonic([&'a Quantity; 3]),
+    /// Instants and values.
+    Table(&'a [f64], &'a [Quantity], Option<Interpolation>),
+}
+
+/// The quantity 0.
+fn nothing() -> Quantity {
+    Quantity::fixed(0.0)
+}
+
+/// A spring with a damper between points of two bodies.
+#[derive(Clone, Debug, Deserialize, JsonSchema)]
+#[serde(deny_unknown_fields)]
+pub struct Spring {
+    /// The two bodies; one of them may be "ground".
+    pub between: [String; 2],
+    /// Its ends.
+    pub at: Ends,
+    /// Length at zero force.
+    #[schemars(extend("unit" = "m", "minimum" = 0))]
+    pub rest_length: Quantity,
+    /// Stiffness k.
+    #[schemars(extend("unit" = "N/m", "minimum" = 0))]
+    pub stiffness: Quantity,
+    /// Cubic stiffness k3, default 0.
+    #[serde(default = "nothing")]
+    #[schemars(extend("unit" = "N/m³"))]
+    pub cubic: Quantity,
+    /// Damping c, default 0.
+    #[serde(default = "nothing")]
+    #[schemars(extend("unit" = "N s/m", "minimum" = 0))]
+    pub damping: Quantity,
+}
+
+/// A spring with a damper about the axis of a joint.
+#[derive(Clone, Debug, Deserialize, JsonSchema)]
+#[serde(deny_unknown_fields)]
+pub struct TorsionSpring {
+    /// Name of a revolute, planar or cylindrical joint.
+    pub joint: String,
+    /// Angle at zero torque: of the first body relative to the second (ground counts as the second)
+    /// about the axis, from the placement; default 0.
+    #[serde(default = "nothing")]
+    #[schemars(extend("unit" = "rad"))]
+    pub rest_angle: Quantity,
+    /// Stiffness.
+    #[schemars(extend("unit" = "N m/rad", "minimum" = 0))]
+    pub stiffness: Quantity,
+    /// Damping, default 0.
+    #[serde(default = "nothing")]
+    #[schemars(extend("unit" = "N m s/rad", "minimum" = 0))]
+    pub damping: Quantity,
+}
+
+/// A degree of freedom of a joint.
+#[derive(Clone, Copy, Debug, Deserialize, JsonSchema)]
+#[serde(rename_all = "snake_case")]
+pub enum Motion {
+    /// Rotation about its axis.
+    Turn,
+    /// Displacement along its axis.
+    Slide,
+}
+
+/// Viscous damping in a joint.
+#[derive(Clone, Debug, Deserialize, JsonSchema)]
+#[serde(deny_unknown_fields)]
+pub struct Damping {
+    /// Name of a revolute, prismatic, cylindrical, planar, spherical or universal joint.
+    pub joint: String,
+    /// Motion of a cylindrical joint, default rotation.
+    pub motion: Option<Motion>,
+    /// Force or torque per unit of rate.
+    #[schemars(extend("unit" = "N s/m or N m s/rad", "minimum" = 0))]
+    pub coefficient: Quantity,
+}
+
+/// Coulomb friction in a joint.
+#[derive(Clone, Debug, Deserialize, JsonSchema)]
+#[serde(deny_unknown_fields)]
+pub struct Friction {
+    /// Name of a revolute, prismatic, cylindrical or planar joint.
+    pub joint: String,
+    /// Motion of a cylindrical joint, default rotation.
+    pub motion: Option<Motion>,
+    /// Force or torque at rates well above the width.
+    #[schemars(extend("unit" = "N or N m", "minimum" = 0))]
+    pub size: Quantity,
+    /// Rate at which 76 % of it acts. A smaller width is sharper and needs finer steps.
+    #[schemars(extend("unit" = "m/s or rad/s", "exclusiveMinimum" = 0))]
+    pub width: Quantity,
+}
+
+/// A pressure on shells of a body of elements.
+#[derive(Clone, Debug, Deserialize, JsonSchema)]
+#[serde(deny_unknown_fields)]
+pub struct Pressure {
+    /// The body.
+    pub body: String,
+    /// Name of the set of faces.
+    pub faces: String,
+    /// Pressure, positive along the normal of the shells: a number, or a function of time.
+    pub pressure: PressureInTime,
+}
+
+/// A force per area on shells of a body of elements.
+#[derive(Clone, Debug, Deserialize, JsonSchema)]
+#[serde(deny_unknown_fields)]
+pub struct AreaForce {
+    /// The body.
+    pub body: String,
+    /// Name of the set of faces.
+    pub faces: String,
+    /// Direction, of any length but zero.
+    #[schemars(extend("unit" = "1"))]
+    pub direction: Vector,
+    /// Axes in which the direction is given and fixed, default ground.
+    #[serde(default)]
+    pub axes: Axes,
+    /// Force per area of the undeformed shells: a number, or a function of time.
+    pub magnitude: PressureInTime,
+}
+
+/// A force per length on edges of shells of a body of elements.
+#[derive(Clone, Debug, Deserialize, JsonSchema)]
+#[serde(deny_unknown_fields)]
+pub struct EdgeForce {
+    /// The body.
+    pub body: String,
+    /// Name of the set of edges.
+    pub edges: String,
+    /// Direction, of any length but zero.
+    #[schemars(extend("unit" = "1"))]
+    pub direction: Vector,
+    /// Axes in which the direction is given and fixed, default ground.
+    #[serde(default)]
+    pub axes: Axes,
+    /// Force per length of the undeformed edges: a number, or a function of time.
+    pub magnitude: LineForceInTime,
+}
+
+/// A force per length on beams of a body of elements, at their nodes.
+#[derive(Clone, Debug, Deserialize, JsonSchema)]
+#[serde(deny_unknown_fields)]
+pub struct LineForce {
+    /// The body.
+    pub body: String,
+    /// Name of the set of beams.
+    pub beams: String,
+    /// Direction, of any length but zero.
+    #[schemars(extend("unit" = "1"))]
+    pub direction: Vector,
+    /// Axes in which the direction is given and fixed, default ground.
+    #[serde(default)]
+    pub axes: Axes,
+    /// Force per length of the undeformed beams: a number, or a function of time.
+    pub magnitude: LineForceInTime,
+}
+
+impl Load {
+    /// Its key in the file.
+    pub fn key(&self) -> &'static str {
+        match self {
+            Load::Force(_) => "force",
+            Load::Torque(_) => "torque",
+            Load::Spring(_) => "spring",
+            Load::TorsionSpring(_) => "torsion_spring",
+            Load::Damping(_) => "damping",
+            Load::Friction(_) => "friction",
+            Load::Pressure(_) => "pressure",
+            Load::Area(_) => "area",
+            Load::Edge(_) => "edge",
+            Load::Line(_) => "line",
+        }
+    }
+}

@@ -1,0 +1,26 @@
+//! Sparse linear algebra: static patterns, LU and Cholesky factorisation.
+
+mod border;
+mod branches;
+pub mod cholesky;
+mod eliminated;
+mod elimination;
+mod factors;
+mod front;
+mod fronts;
+pub mod gmres;
+mod matrix;
+mod multifrontal;
+pub mod pattern;
+mod plans;
+mod replay;
+mod scaling;
+mod short_rows;
+mod sparse_lu;
+mod substitution;
+
+pub use elimination::{Factors, Pivots, SingularMatrix, SolveScalar};
+pub use factors::{LAST, REFINED_SOLVES, SparseLu, is_last};
+pub use front::System;
+pub use matrix::SparseMatrix;
+pub use pattern::{Emit, KnownPivots, Pattern};

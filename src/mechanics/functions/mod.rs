@@ -1,0 +1,26 @@
+//! Functions of interest: quantities at an instant, and their reduction over a run to a number.
+
+mod energy;
+pub mod evaluate;
+pub mod flight;
+pub mod function;
+pub mod instant;
+pub mod linearised;
+mod measure;
+mod multipliers;
+pub mod peak;
+pub mod resolution;
+pub mod rest;
+pub mod scene;
+pub mod smoothed;
+pub mod snapshot;
+pub mod stations;
+pub mod turning;
+
+pub use crate::math::soft_max::Bound;
+pub use evaluate::between_samples;
+pub use function::{Function, Reduction, Release};
+pub use instant::{EnergyPart, Gate, GateSide, Instant, Projectile};
+pub use multipliers::{JointMultipliers, Rows};
+pub use scene::{Scene, TerminalEvent};
+pub use turning::Rotation;

@@ -1,0 +1,209 @@
+//! The number of quadrature cells per step that sums over the motion need.
+
+use super::evaluate::sample;
+use super::turning::turns;
+use super::{Function, Instant, Reduction, Release, Scene};
+use crate::integrate::Trajectory;
+use crate::integrate::quadrature::{ADDED, LOBATTO, WEIGHTS};
+use crate::model::Model;
+use crate::system::placement::length_scale;
+
+/// Below this exponent the weight of a soft maximum is negligible: e^-72 is ε².
+const COLD: f64 = -72.0;
+/// Round-off of a quantity, relative to its natural size.
+const NOISE: f64 = 1e3 * f64::EPSILON;
+/// Largest number of cells of a step, and largest factor by which it may grow at once.
+const MOST: f64 = 256.0;
+const GROWTH: f64 = 4.0;
+/// Orders of the two quadrature rules of a cell.
+const ORDERS: [f64; 2] = [6.0, 10.0];
+
+/// Errors with the cells in use, and the cells that are needed.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Resolution {
+    /// Largest estimated error of a sum, relative to the sum of sizes.
+    pub error: f64,
+    /// Number of cells of each step that keeps the error of every sum below the goal; empty for one each.
+    pub cells: Vec<u32>,
+}
+
+/// The integrand of a function over the motion.
+struct Sum {
+    /// Size of the integrand at every sample, relative to the whole.
+    sizes: Vec<f64>,
+    /// The integrand at every sample, relative to the whole.
+    terms: Vec<f64>,
+    /// Whether samples with negligible weight need no cells.
+    soft: bool,
+}
+
+/// The cells that the functions `which` need over a run whose samples are nodes of cells. The error
+/// of each sum is below `goal` relative to the sum of sizes, or round-off.
+pub fn resolution(
+    scene: &Scene<f64>,
+    which: &[usize],
+    run: &Trajectory<f64>,
+    goal: f64,
+) -> Resolution {
+    let steps = run.grid.steps();
+    let nodes: Vec<usize> = (0..=run.last()).filter(|&k| run.weights[k] > 0.0).collect();
+    let mut found = Resolution {
+        error: 0.0,
+        cells: vec![0; steps],
+    };
+    for &f in which {
+        let Some(sum) = sum_of(scene, f, (run, &nodes), goal) else {
+            // The maximum over the motion needs a cell in each step, but no sum.
+            found
+                .cells
+                .iter_mut()
+                .for_each(|cells| *cells = (*cells).max(1));
+            continue;
+        };
+        let share = goal / steps as f64;
+        let (mut at, mut total) = (0, 0.0);
+        for k in 1..=steps {
+            let step = run.grid.step(k);
+            let next = at + step.nodes();
+            let width = step.end - step.from;
+            let (wanted, error) = sum.step(at..next + 1, width, step.cells, share);
+            total += error;
+            found.cells[k - 1] = found.cells[k - 1].max(wanted);
+            at = next;
+        }
+        found.error = found.error.max(total);
+    }
+    // One cell a step is what a run has that was told of none.
+    if run.grid.all_cells().is_empty() && found.cells.iter().all(|&cells| cells == 1) {
+        found.cells.clear();
+    }
+    found
+}
+
+impl Sum {
+    /// Number of cells that a step with these nodes needs, and the error of the sum over it.
+    fn step(
+        &self,
+        nodes: std::ops::Range<usize>,
+        width: f64,
+        cells: usize,
+        share: f64,
+    ) -> (u32, f64) {
+        let (sizes, terms) = (&self.sizes[nodes.clone()], &self.terms[nodes]);
+        let least = match self.soft && sizes.iter().all(|&size| size < COLD.exp()) {
+            true => 0,
+            false => 1,
+        };
+        if cells == 0 {
+            // Values at the two ends give no estimate: the whole is uncertain.
+            let error = 0.5 * width * (sizes[0] + sizes[sizes.len() - 1]);
+            return (least, error);
+        }
+        let part = width / cells as f64;
+        let cell = |i: usize| {
+            let at = ADDED * i;
+            let rule = |of: &[f64], weights: &[f64; 7]| -> f64 {
+                weights.iter().zip(&of[at..]).map(|(w, x)| w * x).sum()
+            };
+            let difference = (rule(terms, &WEIGHTS) - rule(terms, &LOBATTO)).abs();
+            let size = rule(sizes, &WEIGHTS);
+            // The difference of both rules is the error of the lower one.
+            let relative = (difference / size).powf(ORDERS[1] / ORDERS[0]).min(1.0);
+            if size > 0.0 {
+                part * size * relative
+            } else {
+                0.0
+            }
+        };
+        let error: f64 = (0..cells).map(cell).sum();
+        if least == 0 {
+            return (0, error);
+        }
+        let more = (error / share).powf(1.0 / ORDERS[1]).clamp(1.0, GROWTH);
+        let wanted = (cells as f64 * more).ceil().min(MOST);
+        // Rounding up must not increase the number at every call.
+        let wanted = if error <= share { cells as f64 } else { wanted };
+        (wanted as u32, error)
+    }
+}
+
+/// The size of a quantity with this unit in a motion, from the scene's mass m and length l and the
+/// largest speed v, at least √(g l): m v² for an energy or a moment. Zero if it is not known.
+fn natural(unit: &str, model: &Model<f64>, run: &Trajectory<f64>) -> f64 {
+    let mass: f64 = model.bodies.iter().map(|body| body.mass).sum();
+    let length = length_scale(model);
+    let square = |six: &[f64]| six[..3].iter().map(|x| x * x).sum::<f64>();
+    let fastest = (0..model.bodies.len()).flat_map(|body| {
+        let o = run.numbering.velocity(body);
+        (0..=run.last()).map(move |k| square(&run.v(k)[o..]))
+    });
+    let square = fastest.fold(model.gravity.norm() * length, f64::max);
+    let speed = square.sqrt();
+    match unit {
+        "m" => length,
+        "m/s" => speed,
+        "m/s²" => square / length,
+        "m²/s²" => square,
+        "rad" => 1.0,
+        "rad/s" => speed / length,
+        "kg m/s" => mass * speed,
+        "kg m²/s" => mass * speed * length,
+        "J" | "N m" => mass * square,
+        "N" => mass * square / length,
+        _ => 0.0,
+    }
+}
+
+/// The integrand of function f at the nodes of a run; `None` if the function is no sum.
+fn sum_of(
+    scene: &Scene<f64>,
+    f: usize,
+    (run, nodes): (&Trajectory<f64>, &[usize]),
+    goal: f64,
+) -> Option<Sum> {
+    let (instant, rho) = match scene.function(f) {
+        Function::Reduced { instant, reduction } => match *reduction {
+            Reduction::Final => return None,
+            Reduction::Integral => (instant.clone(), None),
+            Reduction::Ks { rho, .. } | Reduction::InducedExponential { rho } => {
+                (instant.clone(), Some(rho))
+            }
+        },
+        Function::Clearance { release, .. } => match release {
+            Release::Final => return None,
+            &Release::Best {
+                rho,
+                projectile,
+                gate,
+            } => (Instant::Range { projectile, gate }, Some(rho)),
+        },
+        Function::Duration | Function::OfDesign { .. } => return None,
+    };
+    let turns = turns(instant.watched_rotation(), run);
+    let all = sample(&instant, &turns, &scene.model, run);
+    let values: Vec<f64> = nodes.iter().map(|&k| all[k]).collect();
+    let terms: Vec<f64> = match rho {
+        None => values,
+        Some(rho) => {
+            let top = values.iter().fold(f64::NEG_INFINITY, |m, &g| m.max(g));
+            values.iter().map(|g| (rho * (g - top)).exp()).collect()
+        }
+    };
+    let weighed = terms.iter().zip(nodes);
+    let total: f64 = weighed.map(|(x, &k)| x.abs() * run.weights[k]).sum();
+    // A quantity that is zero but for round-off is as accurate as its unit in this scene. Inside steps accelerations are
+    // less accurate than the motion.
+    let unit = instant.unit();
+    let least = match (unit, rho) {
+        ("m/s²", rho) => rho.unwrap_or(1.0) * natural(unit, &scene.model, run),
+        (_, None) => NOISE / goal * natural(unit, &scene.model, run),
+        (_, Some(_)) => 0.0,
+    };
+    let total = total.max(least);
+    let scale = if total > 0.0 { 1.0 / total } else { 0.0 };
+    Some(Sum {
+        sizes: terms.iter().map(|x| x.abs() * scale).collect(),
+        terms: terms.iter().map(|x| x * scale).collect(),
+        soft: rho.is_some(),
+    })
+}

@@ -1,0 +1,156 @@
+//! Loads: forces and torques on bodies, springs, dampers and friction.
+//!
+//! Let m(t) be a [`TimeFunction`], d = P_A − P_B the vector between two points, l = √(dᵀd), e the
+//! axis of a joint, φ the angle of its body A relative to body B about e, s = e · d its
+//! displacement, and w a width. Each load acts on body A by
+//!
+//! ```text
+//! force              F = m(t) n              at a point; n in ground or in body axes
+//! torque             M = m(t) n              n in ground or in body axes
+//! spring             F = −(k x + k3 x³ + c l̇) d / l,    x = l − l0
+//! torsion spring     M = −(k x + c φ̇) e,                x = φ − φ0
+//! damping            M = −c φ̇ e   or   F = −c ṡ e
+//! ball damping       M = −c (ω_A − ω_B)
+//! friction           M = −μ tanh(φ̇ / w) e   or   F = −μ tanh(ṡ / w) e
+//! ```
+//!
+//! and by the opposite on body B, so momentum is conserved. Loads that are spread over the elements of a flexible body
+//! have a file of their own ([`super::distributed`]). Forces and their derivatives are in `system::loads`.
+
+use super::axes::Axes;
+use super::distributed::DistributedLoad;
+use super::drive::DegreeOfFreedom;
+use super::time_function::TimeFunction;
+use crate::math::{Scalar, Vec3, parameters};
+
+/// A named load.
+#[derive(Clone, Debug)]
+pub struct Load<S> {
+    /// Name in the problem file.
+    pub name: String,
+    /// Kind and parameters.
+    pub kind: LoadKind<S>,
+}
+
+/// The kinds of load.
+#[derive(Clone, Debug)]
+pub enum LoadKind<S> {
+    /// A force at a point of a body.
+    Force {
+        /// The body.
+        body: usize,
+        /// The point, from the centre of mass in body axes \[m\].
+        point: Vec3<S>,
+        /// Direction n; it is not normalised.
+        direction: Vec3<S>,
+        /// Axes of the direction.
+        axes: Axes,
+        /// m(t) \[N\].
+        magnitude: TimeFunction<S>,
+    },
+    /// A torque on a body.
+    Torque {
+        /// The body.
+        body: usize,
+        /// Direction n; it is not normalised.
+        direction: Vec3<S>,
+        /// Axes of the direction.
+        axes: Axes,
+        /// m(t) \[N m\].
+        magnitude: TimeFunction<S>,
+    },
+    /// A spring with a damper between points of two bodies. The points must stay apart, unless l0 and c are zero: then
+    /// F = −(k + k3 l²) d is smooth where they meet.
+    Spring {
+        /// Body A.
+        body_a: usize,
+        /// Body B; `None` is ground.
+        body_b: Option<usize>,
+        /// Point of A, from the centre of mass in body axes \[m\].
+        point_a: Vec3<S>,
+        /// Point of B, from the centre of mass in body axes (on ground: from the origin) \[m\].
+        point_b: Vec3<S>,
+        /// Length l0 at zero force \[m\].
+        rest_length: S,
+        /// Stiffness k \[N/m\].
+        stiffness: S,
+        /// Cubic stiffness k3 \[N/m³\].
+        cubic: S,
+        /// Damping c \[N s/m\].
+        damping: S,
+    },
+    /// A spring with a damper about the axis of a joint. Its angle φ has all turns since the start.
+    TorsionSpring {
+        /// The joint.
+        joint: usize,
+        /// The body whose first coordinate has the turns of φ (see `system::turns`). Without it x = φ − φ0 is taken in
+        /// (−π, π] and jumps by a turn half a turn from rest.
+        counter: Option<usize>,
+        /// Angle φ0 at zero torque \[rad\].
+        rest_angle: S,
+        /// Stiffness k \[N m/rad\].
+        stiffness: S,
+        /// Damping c \[N m s/rad\].
+        damping: S,
+    },
+    /// Viscous damping along or about the axis of a joint.
+    Damping {
+        /// The joint.
+        joint: usize,
+        /// The degree of freedom that is damped.
+        dof: DegreeOfFreedom,
+        /// c \[N m s/rad or N s/m\].
+        coefficient: S,
+    },
+    /// Viscous damping of all relative rotation of a joint's bodies.
+    BallDamping {
+        /// The joint.
+        joint: usize,
+        /// c \[N m s/rad\].
+        coefficient: S,
+    },
+    /// Coulomb friction of constant size along or about the axis of a joint. It is smooth at rate
+    /// zero.
+    Friction {
+        /// The joint.
+        joint: usize,
+        /// The degree of freedom with friction.
+        dof: DegreeOfFreedom,
+        /// Size μ of the torque or force \[N m or N\].
+        size: S,
+        /// Rate w, at which tanh 1 of μ acts \[rad/s or m/s\].
+        width: S,
+    },
+    /// A pressure or a dead load on the elements of a flexible body.
+    Distributed(DistributedLoad<S>),
+}
+
+parameters!(struct Load { name; kind });
+
+parameters!(enum LoadKind {
+    Force { body, axes; point, direction, magnitude },
+    Torque { body, axes; direction, magnitude },
+    Spring { body_a, body_b; point_a, point_b, rest_length, stiffness, cubic, damping },
+    TorsionSpring { joint, counter; rest_angle, stiffness, damping },
+    Damping { joint, dof; coefficient },
+    BallDamping { joint; coefficient },
+    Friction { joint, dof; size, width },
+    Distributed(; load),
+});
+
+impl<S: Scalar> LoadKind<S> {
+    /// The time function of the load, if it has one.
+    pub fn course(&self) -> Option<&TimeFunction<S>> {
+        match self {
+            LoadKind::Force { magnitude, .. } | LoadKind::Torque { magnitude, .. } => {
+                Some(magnitude)
+            }
+            LoadKind::Distributed(load) => Some(&load.magnitude),
+            LoadKind::Spring { .. }
+            | LoadKind::TorsionSpring { .. }
+            | LoadKind::Damping { .. }
+            | LoadKind::BallDamping { .. }
+            | LoadKind::Friction { .. } => None,
+        }
+    }
+}

@@ -1,0 +1,274 @@
+//! Faults of a mesh: loose nodes, inverted or warped elements, mid nodes out of place.
+
+use super::mesh::{Mesh, SHELL_EDGES};
+use super::shell::NODES;
+use super::shell::basis::TABLES;
+use crate::math::Vec3;
+
+/// A fault of a mesh, with the number of the element or node.
+#[derive(Clone, Debug, PartialEq, thiserror::Error)]
+pub enum MeshFault {
+    /// An element names a node that does not exist.
+    #[error("shell {shell} names node {node}, and there are {nodes} nodes")]
+    UnknownNode {
+        /// The element.
+        shell: usize,
+        /// The node.
+        node: usize,
+        /// How many there are.
+        nodes: usize,
+    },
+    /// A node occurs twice in an element.
+    #[error("shell {shell} names node {node} twice")]
+    RepeatedNode {
+        /// The element.
+        shell: usize,
+        /// The node.
+        node: usize,
+    },
+    /// A node belongs to no element.
+    #[error("node {node} is loose: no element has it")]
+    LooseNode {
+        /// The node.
+        node: usize,
+    },
+    /// A place that is not finite.
+    #[error("node {node} has no finite place")]
+    NoPlace {
+        /// The node.
+        node: usize,
+    },
+    /// The normal of an element turns over within it, or its area vanishes.
+    #[error(
+        "shell {shell} is inverted or folded: its normal at local node {local} turns by more than \
+         80 degrees from that of its centre, or its area vanishes there"
+    )]
+    Inverted {
+        /// The element.
+        shell: usize,
+        /// The local node.
+        local: usize,
+    },
+    /// A middle node is far from the middle.
+    #[error(
+        "shell {shell}: its middle node {local} stands at {fraction:.3} of its edge, not near 0.5 \
+         (allowed are 0.3 to 0.7): is the order of the nodes right?"
+    )]
+    MiddleNode {
+        /// The element.
+        shell: usize,
+        /// The local node.
+        local: usize,
+        /// Its position along the edge.
+        fraction: f64,
+    },
+    /// A beam names a node that does not exist, or one twice.
+    #[error("beam {beam} names node {node}, which does not exist or which it names twice")]
+    BeamNode {
+        /// The beam.
+        beam: usize,
+        /// The node.
+        node: usize,
+    },
+    /// The middle node of a beam is far from the middle, or the beam turns back.
+    #[error(
+        "beam {beam}: its middle node stands at {fraction:.3} of its length, not near 0.5 (allowed are \
+         0.3 to 0.7), or the beam turns back within itself: is the order of the nodes right?"
+    )]
+    BeamShape {
+        /// The beam.
+        beam: usize,
+        /// Position of the middle node along the chord.
+        fraction: f64,
+    },
+    /// A beam without an orientation.
+    #[error("there are {beams} beams and {orientations} orientations")]
+    Orientations {
+        /// Number of beams.
+        beams: usize,
+        /// Number of orientations.
+        orientations: usize,
+    },
+    /// The orientation of a beam runs along it.
+    #[error(
+        "beam {beam}: its orientation is nothing or runs along the beam within 1e-3 rad at node {local} \
+         of it, so its section has no axis 2; give another vector"
+    )]
+    Orientation {
+        /// The beam.
+        beam: usize,
+        /// The local node.
+        local: usize,
+    },
+    /// Two elements at an edge have opposite normals.
+    #[error("shells {first} and {second} share an edge and are wound in opposite directions")]
+    OppositeNormals {
+        /// An element.
+        first: usize,
+        /// Its neighbour.
+        second: usize,
+    },
+}
+
+/// All faults of a mesh with nodes at these places \[m\].
+pub fn faults(mesh: &Mesh, nodes: &[Vec3<f64>]) -> Vec<MeshFault> {
+    let mut all = connectivity(mesh);
+    if !all.is_empty() {
+        return all;
+    }
+    for (node, place) in nodes.iter().enumerate() {
+        if place.iter().any(|x| !x.is_finite()) {
+            all.push(MeshFault::NoPlace { node });
+        }
+    }
+    if all.is_empty() {
+        for (shell, element) in mesh.shells.iter().enumerate() {
+            all.extend(shape(shell, &element.map(|k| nodes[k])));
+        }
+        for (beam, element) in mesh.beams.iter().enumerate() {
+            all.extend(beam_shape(beam, &element.map(|k| nodes[k])));
+        }
+    }
+    all
+}
+
+fn connectivity(mesh: &Mesh) -> Vec<MeshFault> {
+    let mut used = vec![false; mesh.nodes];
+    let mut all = Vec::new();
+    for (shell, element) in mesh.shells.iter().enumerate() {
+        for (k, &node) in element.iter().enumerate() {
+            if node >= mesh.nodes {
+                let nodes = mesh.nodes;
+                all.push(MeshFault::UnknownNode { shell, node, nodes });
+            } else if element[..k].contains(&node) {
+                all.push(MeshFault::RepeatedNode { shell, node });
+            } else {
+                used[node] = true;
+            }
+        }
+    }
+    for (beam, element) in mesh.beams.iter().enumerate() {
+        for (k, &node) in element.iter().enumerate() {
+            if node >= mesh.nodes || element[..k].contains(&node) {
+                all.push(MeshFault::BeamNode { beam, node });
+            } else {
+                used[node] = true;
+            }
+        }
+    }
+    let loose = used.iter().enumerate().filter(|(_, used)| !**used);
+    all.extend(loose.map(|(node, _)| MeshFault::LooseNode { node }));
+    all.extend(opposite_normals(mesh));
+    all
+}
+
+/// Edges through which two elements run in the same direction.
+fn opposite_normals(mesh: &Mesh) -> Vec<MeshFault> {
+    // An element's boundary runs 0 → 2 → 8 → 6; its neighbour runs through the same edge backwards.
+    let mut seen: std::collections::HashMap<[usize; 3], Vec<usize>> = Default::default();
+    for (shell, element) in mesh.shells.iter().enumerate() {
+        for (k, edge) in SHELL_EDGES.iter().enumerate() {
+            let mut nodes = edge.map(|local| element[local]);
+            if k >= 2 {
+                nodes.reverse();
+            }
+            seen.entry(nodes).or_default().push(shell);
+        }
+    }
+    let mut all = Vec::new();
+    for (edge, shells) in &seen {
+        let mut backwards = *edge;
+        backwards.reverse();
+        // Where three sheets meet, some pair must agree in direction.
+        let others = seen.get(&backwards).map_or(0, Vec::len);
+        if let (&[first, second], 0) = (shells.as_slice(), others) {
+            all.push(MeshFault::OppositeNormals { first, second });
+        }
+    }
+    all.sort_by_key(|fault| match fault {
+        MeshFault::OppositeNormals { first, second } => (*first, *second),
+        _ => (0, 0),
+    });
+    all
+}
+
+fn shape(shell: usize, x: &[Vec3<f64>; NODES]) -> Option<MeshFault> {
+    let normal = |k: usize| {
+        let [r, s] = [0, 1]
+            .map(|d| -> Vec3<f64> { (0..NODES).map(|a| x[a] * TABLES.nodes[k].by[d][a]).sum() });
+        (r.cross(&s), r.norm() * s.norm())
+    };
+    let (centre, size) = normal(4);
+    let flat = centre.norm() <= 1e-6 * size || size == 0.0;
+    for local in 0..NODES {
+        let (n, size) = normal(local);
+        let turned = n.dot(&centre) <= 80.0_f64.to_radians().cos() * n.norm() * centre.norm();
+        if flat || turned || n.norm() <= 1e-6 * size {
+            return Some(MeshFault::Inverted { shell, local });
+        }
+    }
+    let rows = [
+        [0, 1, 2],
+        [3, 4, 5],
+        [6, 7, 8],
+        [0, 3, 6],
+        [1, 4, 7],
+        [2, 5, 8],
+    ];
+    for [first, local, last] in rows {
+        let chord = x[last] - x[first];
+        let fraction = (x[local] - x[first]).dot(&chord) / chord.norm_squared();
+        if !(0.3..=0.7).contains(&fraction) {
+            return Some(MeshFault::MiddleNode {
+                shell,
+                local,
+                fraction,
+            });
+        }
+    }
+    None
+}
+
+fn beam_shape(beam: usize, x: &[Vec3<f64>; 3]) -> Option<MeshFault> {
+    let chord = x[2] - x[0];
+    let fraction = (x[1] - x[0]).dot(&chord) / chord.norm_squared();
+    // The tangents at both ends go forwards.
+    let ends = [
+        x[1] * 4.0 - x[0] * 3.0 - x[2],
+        x[0] + x[2] * 3.0 - x[1] * 4.0,
+    ];
+    let forwards = ends.iter().all(|t| t.dot(&chord) > 0.0);
+    let sound = forwards && (0.3..=0.7).contains(&fraction);
+    (!sound).then_some(MeshFault::BeamShape { beam, fraction })
+}
+
+/// Orientations that are missing or run along their beams. The mesh has no other faults.
+pub fn orientation_faults(
+    mesh: &Mesh,
+    nodes: &[Vec3<f64>],
+    orientations: &[Vec3<f64>],
+) -> Vec<MeshFault> {
+    if mesh.beams.len() != orientations.len() {
+        return vec![MeshFault::Orientations {
+            beams: mesh.beams.len(),
+            orientations: orientations.len(),
+        }];
+    }
+    let mut all = Vec::new();
+    for (beam, (element, v)) in mesh.beams.iter().zip(orientations).enumerate() {
+        let x = element.map(|k| nodes[k]);
+        let tangents = [
+            x[1] * 4.0 - x[0] * 3.0 - x[2],
+            x[2] - x[0],
+            x[0] + x[2] * 3.0 - x[1] * 4.0,
+        ];
+        let along = |t: &Vec3<f64>| {
+            let sine = t.cross(v).norm() / (t.norm() * v.norm());
+            sine.is_nan() || sine <= 1e-3
+        };
+        if let Some(local) = tangents.iter().position(along) {
+            all.push(MeshFault::Orientation { beam, local });
+        }
+    }
+    all
+}

@@ -1,0 +1,139 @@
+//! Attachments: how the frame of a joint on a flexible body moves with the elastic coordinates, and how
+//! cotangents of the frame come back to these.
+//!
+//! ```text
+//! s = X + Σ q_I N_I,     e_k' = e_k + θ × e_k,     θ = Σ q_I Θ_I
+//! ```
+//!
+//! Both are linear in q, so rates, accelerations and virtual rates have the same form.
+
+use super::bodies::BodyMotion;
+use super::frame_motion::FrameMotion;
+use super::numbering::Numbering;
+use crate::math::{Scalar, Vec3};
+use crate::model::{Joint, JointFrame, Modes};
+
+/// Σ x_I N_I and Σ x_I Θ_I with x a vector of each carrier.
+fn sums<S: Scalar>(
+    modes: &Modes<S>,
+    motions: &[BodyMotion<S>],
+    of: impl Fn(&BodyMotion<S>) -> Vec3<S>,
+) -> (Vec3<S>, Vec3<S>) {
+    let mut sums = (Vec3::zeros(), Vec3::zeros());
+    let shapes = modes.displacement.iter().zip(&modes.rotation);
+    for ((n, t), &(carrier, k)) in shapes.zip(&modes.places) {
+        let x = of(&motions[carrier])[k];
+        sums.0 += n * x;
+        sums.1 += t * x;
+    }
+    sums
+}
+
+/// The rotation Σ q_I Θ_I of a section, axes of its body \[rad\].
+pub fn section_rotation<S: Scalar>(modes: &Modes<S>, motions: &[BodyMotion<S>]) -> Vec3<S> {
+    sums(modes, motions, |x| x.position).1
+}
+
+/// The change of a frame with these displacement and rotation.
+fn change<S: Scalar>(frame: &JointFrame<S>, (n, t): (Vec3<S>, Vec3<S>)) -> JointFrame<S> {
+    JointFrame {
+        point: n,
+        axes: frame.axes.map(|axis| t.cross(&axis)),
+        length: S::zero(),
+    }
+}
+
+/// The frame of an attachment on the deformed body, and its motion.
+pub fn deformed_frame<S: Scalar>(
+    frame: &JointFrame<S>,
+    modes: &Modes<S>,
+    motions: &[BodyMotion<S>],
+) -> (JointFrame<S>, FrameMotion<S>) {
+    let mut moved = *frame;
+    moved.add(&change(frame, sums(modes, motions, |x| x.position)));
+    let motion = FrameMotion {
+        rate: change(frame, sums(modes, motions, |x| x.velocity)),
+        acceleration: change(frame, sums(modes, motions, |x| x.acceleration)),
+        virtual_rate: change(frame, sums(modes, motions, |x| x.virtual_velocity)),
+    };
+    (moved, motion)
+}
+
+/// Derivatives of a row's rate in the rates of the elastic coordinates, with their places among the
+/// velocities, for a row with this force and torque on the section (body axes).
+pub fn elastic_gradient<'a, S: Scalar>(
+    modes: &'a Modes<S>,
+    numbering: &'a Numbering,
+    (force, torque): (Vec3<S>, Vec3<S>),
+) -> impl Iterator<Item = (usize, S)> + 'a {
+    let shapes = modes.displacement.iter().zip(&modes.rotation);
+    let places = shapes.zip(&modes.places);
+    places.map(move |((n, t), &(carrier, k))| {
+        let slot = numbering.velocity(carrier) + k;
+        (slot, n.dot(&force) + t.dot(&torque))
+    })
+}
+
+/// Σ e_k × f_k: the moment of cotangents of the axes about the section.
+fn moment<S: Scalar>(frame: &JointFrame<S>, by: &JointFrame<S>) -> Vec3<S> {
+    let axes = frame.axes.iter().zip(&by.axes);
+    axes.fold(Vec3::zeros(), |sum, (e, f)| sum + e.cross(f))
+}
+
+/// Derivatives in the elastic coordinates of a quantity with the cotangents `by` in frame A, with
+/// their places among the tangent positions.
+pub fn by_coordinates<'a, S: Scalar>(
+    joint: &Joint<S>,
+    modes: &'a Modes<S>,
+    numbering: &'a Numbering,
+    by: &JointFrame<S>,
+) -> impl Iterator<Item = (usize, S)> + 'a {
+    let torque = moment(&joint.frame_a, by);
+    elastic_gradient(modes, numbering, (by.point, torque))
+}
+
+/// Pulls cotangents of frame A and of its motion back to tangent positions and velocities, where these
+/// are wanted, and to the parameters of the joint (added to `own`); accelerations and virtual velocities
+/// are held.
+pub fn pull_frame(
+    (joint, modes): (&Joint<f64>, &Modes<f64>),
+    (numbering, motions): (&Numbering, &[BodyMotion<f64>]),
+    (by_frame, by_motion): (&JointFrame<f64>, &FrameMotion<f64>),
+    (mut y, mut v): (Option<&mut [f64]>, Option<&mut [f64]>),
+    own: &mut Joint<f64>,
+) {
+    type Part = fn(&BodyMotion<f64>) -> Vec3<f64>;
+    let frame = &joint.frame_a;
+    let parts: [(&JointFrame<f64>, Part); 4] = [
+        (by_frame, |x| x.position),
+        (&by_motion.rate, |x| x.velocity),
+        (&by_motion.acceleration, |x| x.acceleration),
+        (&by_motion.virtual_rate, |x| x.virtual_velocity),
+    ];
+    own.frame_a.add(by_frame);
+    for (i, (by, of)) in parts.into_iter().enumerate() {
+        let turned = sums(modes, motions, of).1;
+        // f · (θ × e) = e · (f × θ).
+        for (axis, f) in own.frame_a.axes.iter_mut().zip(&by.axes) {
+            *axis += f.cross(&turned);
+        }
+        let torque = moment(frame, by);
+        let Some(cot) = &mut own.modes else { continue };
+        let places = (modes.places.iter()).zip(cot.displacement.iter_mut().zip(&mut cot.rotation));
+        for (&(carrier, k), (n, t)) in places {
+            let x = of(&motions[carrier])[k];
+            *n += by.point * x;
+            *t += torque * x;
+        }
+        let state = match i {
+            0 => y.as_deref_mut(),
+            1 => v.as_deref_mut(),
+            _ => None,
+        };
+        if let Some(state) = state {
+            for (slot, x) in elastic_gradient(modes, numbering, (by.point, torque)) {
+                state[slot] += x;
+            }
+        }
+    }
+}

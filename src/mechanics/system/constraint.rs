@@ -1,0 +1,304 @@
+//! The constraint rows: value, rate, acceleration bias, Jacobian and pull-back of each.
+//!
+//! A row is a bilinear function of markers (see [`super::marker`]). Let d = P_A − P_B be the vector
+//! between two points, and u, w axes of the two frames (see [`crate::model::joint`]):
+//!
+//! ```text
+//!                  value Φ     rate G v             second derivative Φ̈
+//! Coincident k     d_k         ḋ_k                  d̈_k
+//! Perpendicular    u · w       u̇ · w + u · ẇ        ü · w + 2 u̇ · ẇ + u · ẅ
+//! Sliding          u · d       u̇ · d + u · ḋ        ü · d + 2 u̇ · ḋ + u · d̈
+//! Distance         ½(d·d/L−L)  d · ḋ / L            (d · d̈ + ḋ · ḋ) / L
+//! ```
+//!
+//! [`crate::model::JointKind::rows`] lists the rows of each joint: a revolute has Coincident 0, 1, 2 and
+//! two Perpendicular rows. [`super::reaction`] has ∂(Gᵀλ)/∂q.
+//!
+//! A drive moves the markers on body B (see [`super::side`]). Then the rate is G v + Φ_t. The
+//! acceleration term of the index-1 equations is γ = −bias, where the bias is Φ̈ at v̇ = 0.
+
+use super::frame_motion::FrameMotion;
+use super::marker::{self, MarkerKinematics};
+use super::rows::{Markers, MarkersUsed, RowCotangent, Rows};
+use super::side::JointSide;
+use crate::math::{Scalar, Vec3};
+use crate::model::{ConstraintRow, JointFrame};
+use ConstraintRow::{Coincident, Distance, Perpendicular, Sliding};
+
+/// The markers of the rows of a joint; each is evaluated once.
+fn markers<S: Scalar>(used: &MarkersUsed, a: &JointSide<S>, b: &JointSide<S>) -> Markers<S, 3> {
+    let distance = || a.point_jet().minus(&b.point_jet());
+    Markers::of(used, distance, |i| a.axis_jet(i), |i| b.axis_jet(i))
+}
+
+/// Calls `on_rows` with the rows of a joint and their markers.
+fn with_rows<S: Scalar, R: Iterator<Item = ConstraintRow> + Clone, T>(
+    rows: R,
+    (a, b): (&JointSide<S>, &JointSide<S>),
+    on_rows: impl FnOnce(&MarkersUsed, &Rows<S, R, 3>) -> T,
+) -> T {
+    let used = MarkersUsed::by(rows.clone());
+    let rows = Rows {
+        rows,
+        markers: &markers(&used, a, b),
+        length: a.frame.length,
+        ground: &[Vec3::x(), Vec3::y(), Vec3::z()],
+    };
+    on_rows(&used, &rows)
+}
+
+/// Value Φ of a row.
+pub fn value<S: Scalar>(row: ConstraintRow, a: &JointSide<S>, b: &JointSide<S>) -> S {
+    match row {
+        Coincident(k) => a.point()[k] - b.point()[k],
+        Perpendicular { a: i, b: j } => a.axis(i).dot(&b.axis(j)),
+        Sliding { a: i } => a.axis(i).dot(&(a.point() - b.point())),
+        Distance => {
+            let (d, length) = (a.point() - b.point(), a.frame.length);
+            (d.dot(&d) / length - length) * 0.5
+        }
+    }
+}
+
+/// Rate G v + Φ_t of a row.
+pub fn rate<S: Scalar>(row: ConstraintRow, a: &JointSide<S>, b: &JointSide<S>) -> S {
+    let mut out = [S::zero()];
+    rates(std::iter::once(row), a, b, &mut out);
+    out[0]
+}
+
+/// Rates G v + Φ_t of the rows of a joint.
+pub fn rates<S: Scalar>(
+    rows: impl Iterator<Item = ConstraintRow> + Clone,
+    a: &JointSide<S>,
+    b: &JointSide<S>,
+    out: &mut [S],
+) {
+    with_rows(rows, (a, b), |_, rows| rows.rates(out));
+}
+
+/// Second derivatives Φ̈ of the rows of a joint at the accelerations of the motions. If these are
+/// zero, they are the acceleration bias.
+pub fn accelerations<S: Scalar>(
+    rows: impl Iterator<Item = ConstraintRow> + Clone,
+    a: &JointSide<S>,
+    b: &JointSide<S>,
+    out: &mut [S],
+) {
+    with_rows(rows, (a, b), |_, rows| rows.accelerations(out));
+}
+
+/// One row of G: the derivatives of the rate in the velocities of both bodies.
+#[derive(Clone, Copy, Debug)]
+pub struct RowGradient<S> {
+    /// In ṙ_A. The derivative in ṙ_B is its negative, because common motion changes no row.
+    pub force: Vec3<S>,
+    /// In ω_A (body axes of A).
+    pub torque_a: Vec3<S>,
+    /// In ω_B (body axes of B).
+    pub torque_b: Vec3<S>,
+    /// By the rate of the point on body A (body axes), if the body deforms under the joint.
+    pub local_force: Vec3<S>,
+    /// By the rate of the section's rotation on body A (body axes) likewise.
+    pub local_torque: Vec3<S>,
+}
+
+impl<S: Scalar> RowGradient<S> {
+    /// Force and torque on the section of body A.
+    pub fn local(&self) -> (Vec3<S>, Vec3<S>) {
+        (self.local_force, self.local_torque)
+    }
+
+    /// All zero.
+    pub fn zero() -> Self {
+        let zero = Vec3::zeros();
+        Self {
+            force: zero,
+            torque_a: zero,
+            torque_b: zero,
+            local_force: zero,
+            local_torque: zero,
+        }
+    }
+}
+
+/// Action of a row on the section of body A that deforms, in body axes: force at its point, and
+/// torque.
+fn local_gradient<S: Scalar>(
+    row: ConstraintRow,
+    a: &JointSide<S>,
+    b: &JointSide<S>,
+    undeformed: &JointFrame<S>,
+) -> (Vec3<S>, Vec3<S>) {
+    let ra = &a.motion.rotation;
+    let zero = Vec3::zeros();
+    match row {
+        Coincident(k) => (ra.row(k).transpose(), zero),
+        Perpendicular { a: i, b: j } => (zero, undeformed.axes[i].cross(&ra.tr_mul(&b.axis(j)))),
+        Sliding { a: i } => {
+            let d = ra.tr_mul(&(a.point() - b.point()));
+            (a.frame.axes[i], undeformed.axes[i].cross(&d))
+        }
+        Distance => (ra.tr_mul(&((a.point() - b.point()) / a.frame.length)), zero),
+    }
+}
+
+/// Gradient of a row.
+pub fn gradient<S: Scalar>(
+    row: ConstraintRow,
+    a: &JointSide<S>,
+    b: &JointSide<S>,
+) -> RowGradient<S> {
+    let (ra, rb) = (&a.motion.rotation, &b.motion.rotation);
+    let (sa, sb) = (&a.frame.point, &b.frame.point);
+    let mut out = RowGradient::zero();
+    if let Some(undeformed) = &a.undeformed {
+        (out.local_force, out.local_torque) = local_gradient(row, a, b, undeformed);
+    }
+    (out.force, out.torque_a, out.torque_b) = match row {
+        Coincident(k) => {
+            let mut force = Vec3::zeros();
+            force[k] = S::one();
+            (
+                force,
+                sa.cross(&ra.row(k).transpose()),
+                -sb.cross(&rb.row(k).transpose()),
+            )
+        }
+        Perpendicular { a: i, b: j } => (
+            Vec3::zeros(),
+            a.frame.axes[i].cross(&ra.tr_mul(&b.axis(j))),
+            b.frame.axes[j].cross(&rb.tr_mul(&a.axis(i))),
+        ),
+        Sliding { a: i } => {
+            let (e, u) = (&a.frame.axes[i], a.axis(i));
+            let d = a.point() - b.point();
+            (
+                u,
+                e.cross(&ra.tr_mul(&d)) + sa.cross(e),
+                -sb.cross(&rb.tr_mul(&u)),
+            )
+        }
+        Distance => {
+            let u = (a.point() - b.point()) / a.frame.length;
+            (u, sa.cross(&ra.tr_mul(&u)), -sb.cross(&rb.tr_mul(&u)))
+        }
+    };
+    out
+}
+
+/// Cotangents of one side of a joint.
+#[derive(Clone, Debug)]
+pub struct SideCotangent<S> {
+    /// Of the tangent position: δr (ground axes).
+    pub position: Vec3<S>,
+    /// Of the tangent position: δθ (body axes).
+    pub theta: Vec3<S>,
+    /// Of ṙ.
+    pub velocity: Vec3<S>,
+    /// Of ω.
+    pub omega: Vec3<S>,
+    /// Of the frame's point and axes.
+    pub frame: JointFrame<S>,
+    /// Of their motion on the body, if they move.
+    pub moving: Option<FrameMotion<S>>,
+}
+
+impl<S: Scalar> SideCotangent<S> {
+    /// The zero cotangent of a side with a fixed frame.
+    pub fn fixed() -> Self {
+        let zero = Vec3::zeros();
+        Self {
+            position: zero,
+            theta: zero,
+            velocity: zero,
+            omega: zero,
+            frame: JointFrame::zero(),
+            moving: None,
+        }
+    }
+
+    /// Adds another cotangent of a side with a fixed frame.
+    pub fn add(&mut self, other: &Self) {
+        self.position += other.position;
+        self.theta += other.theta;
+        self.velocity += other.velocity;
+        self.omega += other.omega;
+        self.frame.add(&other.frame);
+    }
+
+    /// The zero cotangent of `side`.
+    fn of(side: &JointSide<S>) -> Self {
+        let moving = side.moving.as_ref();
+        Self {
+            moving: moving.map(|_| FrameMotion::zero()),
+            ..Self::fixed()
+        }
+    }
+}
+
+/// Pulls the cotangents of the rows of a joint back to positions, velocities and joint frames of
+/// both bodies: the transposed derivative of [`value`], [`rates`] and [`accelerations`], at
+/// constant accelerations of the bodies.
+pub fn pull_back<S: Scalar>(
+    rows: impl Iterator<Item = ConstraintRow> + Clone,
+    cot: impl Fn(usize) -> RowCotangent<S>,
+    a: &JointSide<S>,
+    b: &JointSide<S>,
+) -> (SideCotangent<S>, SideCotangent<S>) {
+    with_rows(rows, (a, b), |used, rows| {
+        let (by, by_length) = rows.pull_back(cot);
+        let (mut out_a, mut out_b) = (SideCotangent::of(a), SideCotangent::of(b));
+        out_a.frame.length = by_length;
+        if used.points {
+            pull_point(a, &by.distance, &mut out_a);
+            pull_point(b, &MarkerKinematics::zero().minus(&by.distance), &mut out_b);
+        }
+        for i in 0..3 {
+            if used.axes_a[i] {
+                pull_axis(a, i, &by.axes_a[i], &mut out_a);
+            }
+            if used.axes_b[i] {
+                pull_axis(b, i, &by.axes_b[i], &mut out_b);
+            }
+        }
+        (out_a, out_b)
+    })
+}
+
+fn pull_axis<S: Scalar>(
+    side: &JointSide<S>,
+    i: usize,
+    cot: &MarkerKinematics<S>,
+    out: &mut SideCotangent<S>,
+) {
+    let local = side.moving.as_ref().map(|moving| moving.axis(i));
+    let by = marker::pull_back_moving(side.motion, &side.frame.axes[i], local.as_ref(), cot);
+    out.theta += by.theta;
+    out.omega += by.omega;
+    out.frame.axes[i] += by.vector;
+    if let Some(moving) = &mut out.moving {
+        moving.rate.axes[i] += by.local.rate;
+        moving.acceleration.axes[i] += by.local.acceleration;
+        moving.virtual_rate.axes[i] += by.local.virtual_rate;
+    }
+}
+
+fn pull_point<S: Scalar>(
+    side: &JointSide<S>,
+    cot: &MarkerKinematics<S>,
+    out: &mut SideCotangent<S>,
+) {
+    let local = side.moving.as_ref().map(|moving| moving.point());
+    let by = marker::pull_back_moving(side.motion, &side.frame.point, local.as_ref(), cot);
+    out.theta += by.theta;
+    out.omega += by.omega;
+    out.frame.point += by.vector;
+    out.position += cot.x;
+    out.velocity += cot.rate;
+    if let Some(moving) = &mut out.moving {
+        moving.rate.point += by.local.rate;
+        moving.acceleration.point += by.local.acceleration;
+        moving.virtual_rate.point += by.local.virtual_rate;
+    }
+}

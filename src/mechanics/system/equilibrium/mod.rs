@@ -1,0 +1,308 @@
+//! Quasi-static start: deformations without velocity and acceleration.
+//!
+//! Let rigid motions be those with all elastic coordinates at rest. Sought are positions q, rigid velocities v,
+//! rigid accelerations a and reactions λ with
+//!
+//! ```text
+//! M(q) a − f(q, v) + G(q)ᵀ λ = 0,     Φ(q) = 0,     G(q) a + bias(q, v) = 0
+//! M(q) (v − v_g) + G(q)ᵀ τ ⊥ rigid motions,     G(q) v + Φ_t = 0
+//! M(q) T⁺(q − q_g) + G(q)ᵀ σ ⊥ rigid motions,   without the elastic part of q − q_g
+//! ```
+//!
+//! at t = 0. The placement q_g is closed and undeformed. The last two rows keep the bodies, along the motions that the
+//! joints allow, where they are placed and with the velocities that they have, in the metric of the mass. Where the
+//! joints allow none, this is static equilibrium. Else the inertia of the motion balances gravity and loads
+//! (*inertia relief*), and centrifugal forces stretch what turns. Where the bodies turn or move steadily with their loads,
+//! as by a drive, this is relative equilibrium, and they stay deformed so (see [`left_out`]).
+//!
+//! Newton's method solves the equations in real numbers. The part ε ṗ of dual numbers follows from the implicit function
+//! theorem, as in [`super::nearest`]. The matrix of these steps is exact by its products (dual numbers); the factors of
+//! a sparse one, without the derivatives of M and G in the rows of rigid motions, precondition it ([`gmres`]).
+
+mod equations;
+mod matrix;
+mod stability;
+mod unsteady;
+
+use super::bodies::{positions_of, velocities_of};
+use super::failure::AssemblyFailure;
+use super::nearest::nearest;
+use super::numbering::Numbering;
+use super::placement::{guess, length_scale};
+use super::reduce;
+use super::redundancy;
+use super::redundant_rows::RedundantRows;
+use crate::linalg::gmres::gmres;
+use crate::math::{Parameters, Scalar};
+use crate::model::{Mobility, Model};
+use equations::{Layout, State};
+use matrix::Factors;
+pub use stability::growth;
+use std::sync::{Arc, Mutex};
+pub use unsteady::left_out;
+
+const ITERATIONS: usize = 60;
+/// Newton's method stops at this change of positions, relative to the length scale; and at `STAGNANT`, if changes do
+/// not become smaller any more.
+const CLOSE: f64 = 1e-13;
+const STAGNANT: f64 = 1e-8;
+/// Largest change of positions in an iteration, relative to the length scale.
+const LARGEST: f64 = 0.2;
+/// Largest part of the residual that a linear solution leaves, and its products.
+const TOLERANCE: f64 = 1e-6;
+const PRODUCTS: usize = 60;
+/// Linear solutions for a change in Newton's method; and for a derivative, which they refine to round-off.
+const ROUGH: usize = 1;
+const FINE: usize = 3;
+
+/// Number of starts that are kept.
+const KEPT: usize = 4;
+
+/// Known real starts, keyed by the numbers of their models, and the factors of the latest one. A scene is made
+/// repeatedly at one design, for its values and for each derivative.
+#[derive(Clone, Debug, Default)]
+pub struct KnownStarts(Arc<Mutex<Known>>);
+
+#[derive(Debug, Default)]
+struct Known {
+    states: Vec<(Vec<f64>, State<f64>)>,
+    factors: Option<(Vec<f64>, Factors)>,
+}
+
+impl KnownStarts {
+    /// The state of these numbers.
+    fn state(&self, numbers: &[f64]) -> Option<State<f64>> {
+        let known = self.0.lock().ok()?;
+        let same = known.states.iter().find(|(own, _)| own == numbers);
+        same.map(|(_, state)| state.clone())
+    }
+
+    fn keep(&self, numbers: &[f64], state: &State<f64>) {
+        if let Ok(mut known) = self.0.lock() {
+            if known.states.len() == KEPT {
+                known.states.remove(0);
+            }
+            known.states.push((numbers.to_vec(), state.clone()));
+        }
+    }
+
+    /// Takes the factors of these numbers. Another thread makes its own.
+    fn take_factors(&self, numbers: &[f64]) -> Option<Factors> {
+        let mut known = self.0.lock().ok()?;
+        let kept = known.factors.take_if(|(own, _)| own == numbers);
+        kept.map(|(_, factors)| factors)
+    }
+
+    fn keep_factors(&self, numbers: Vec<f64>, factors: Factors) {
+        if let Ok(mut known) = self.0.lock() {
+            known.factors = Some((numbers, factors));
+        }
+    }
+}
+
+/// Moves the bodies of `model`, which are placed and undeformed, to the quasi-static start, and gives them velocities
+/// without vibration.
+///
+/// # Errors
+/// Joints that cannot be closed, or no equilibrium.
+pub fn settle<S: Scalar>(model: &mut Model<S>, known: &KnownStarts) -> Result<(), AssemblyFailure> {
+    let own = without_spin(model);
+    let numbering = Numbering::new(&own);
+    let (state, v) = with_solution((&own, &numbering), known, |given, solver, found| {
+        let layout = solver.layout;
+        let mut state: State<S> = found.map(S::from);
+        if S::INFINITESIMAL {
+            let residual = layout.residual(&own, given, &state);
+            let right: Vec<f64> = residual.iter().map(|x| -x.infinitesimal()).collect();
+            let change = solver
+                .with_factors(found, |factors| solver.change(factors, found, &right, FINE))?;
+            let change: Vec<S> = change.into_iter().map(S::of_infinitesimal).collect();
+            layout.advance(&mut state, &change);
+        }
+        let v = layout.of_rigid(&state.v);
+        Ok((state, v))
+    })?;
+    for (i, body) in model.bodies.iter_mut().enumerate() {
+        (body.position, body.orientation) = positions_of(&state.q[numbering.position(i)..]);
+        if numbering.mobility(i).unknowns() > 0 {
+            (body.velocity, body.angular_velocity) = velocities_of(&v[numbering.velocity(i)..]);
+        }
+    }
+    Ok(())
+}
+
+/// The model with point masses that do not rotate.
+fn without_spin<S: Scalar>(model: &Model<S>) -> Model<S> {
+    let mut own = model.clone();
+    for body in 0..own.bodies.len() {
+        let without = own.bodies[body].inertia.iter().all(|x| x.re() == 0.0);
+        if without && !own.is_of_flexible(body) {
+            own.bodies[body].mobility = Mobility::point();
+        }
+    }
+    own
+}
+
+/// What `of` makes of the real solution for a model [`without_spin`], whose bodies are placed and undeformed.
+fn with_solution<S: Scalar, T>(
+    (own, numbering): (&Model<S>, &Numbering),
+    known: &KnownStarts,
+    of: impl FnOnce(&Given<S>, &Solver, &State<f64>) -> Result<T, AssemblyFailure>,
+) -> Result<T, AssemblyFailure> {
+    let placed = nearest(own)?.q;
+    let given = Given::of(own, numbering, placed);
+    let mut numbers = vec![numbering.unknowns() as f64, numbering.constraints() as f64];
+    let mut real = own.map(&mut |x| {
+        numbers.push(x.re());
+        x.re()
+    });
+    redundancy::leave_out(&mut real);
+    let left_out = RedundantRows::of(&real, numbering);
+    let start = given.map(|x| x.re());
+    let layout = Layout::new(&real, numbering, &left_out, &start.q);
+    let solver = Solver {
+        layout: &layout,
+        model: &real,
+        given: &start,
+        scale: length_scale(&real),
+        mass: real.bodies.iter().map(|body| body.mass).sum(),
+        numbers,
+        known,
+    };
+    let found = match known.state(&solver.numbers) {
+        Some(found) => found,
+        None => solver.solve()?,
+    };
+    of(&given, &solver, &found)
+}
+
+/// The placement of the bodies, their given velocities, and the time of drives and loads.
+pub(super) struct Given<S> {
+    q: Vec<S>,
+    v: Vec<S>,
+    time: S,
+}
+
+impl<S: Scalar> Given<S> {
+    fn of(model: &Model<S>, numbering: &Numbering, q: Vec<S>) -> Self {
+        let (_, mut v) = guess(model);
+        reduce::project(numbering, &mut v);
+        Self {
+            q,
+            v,
+            time: S::zero(),
+        }
+    }
+
+    fn map<T>(&self, of: impl Fn(S) -> T) -> Given<T> {
+        let all = |x: &[S]| x.iter().map(|&x| of(x)).collect();
+        Given {
+            q: all(&self.q),
+            v: all(&self.v),
+            time: of(self.time),
+        }
+    }
+}
+
+/// The equations in real numbers.
+struct Solver<'a> {
+    layout: &'a Layout<'a>,
+    model: &'a Model<f64>,
+    given: &'a Given<f64>,
+    /// Length of the scene \[m\] and mass of all bodies \[kg\].
+    scale: f64,
+    mass: f64,
+    /// All numbers of the model, and the starts that are known.
+    numbers: Vec<f64>,
+    known: &'a KnownStarts,
+}
+
+impl Solver<'_> {
+    /// What `of` makes of factors at the solution. New ones and kept ones are the same, so no thread changes a result.
+    fn with_factors<T>(
+        &self,
+        found: &State<f64>,
+        of: impl FnOnce(&mut Factors) -> T,
+    ) -> Result<T, AssemblyFailure> {
+        let mut factors = match self.known.take_factors(&self.numbers) {
+            Some(factors) => factors,
+            None => {
+                let mut factors = Factors::plan(self.layout, self.model, found);
+                let made = factors.make(self.layout, self.model, found);
+                made.map_err(|_| AssemblyFailure::Singular)?;
+                factors
+            }
+        };
+        let out = of(&mut factors);
+        self.known.keep_factors(self.numbers.clone(), factors);
+        Ok(out)
+    }
+
+    /// Newton's method from the placement. The solution becomes known.
+    fn solve(&self) -> Result<State<f64>, AssemblyFailure> {
+        let mut x = self.layout.start(self.given);
+        let none = |iterations| AssemblyFailure::NoEquilibrium { iterations };
+        let mut before = f64::INFINITY;
+        let mut factors = Factors::plan(self.layout, self.model, &x);
+        for iteration in 1..=ITERATIONS {
+            let residual = self.layout.residual(self.model, self.given, &x);
+            let right: Vec<f64> = residual.iter().map(|x| -x).collect();
+            let made = factors.make(self.layout, self.model, &x);
+            made.map_err(|_| none(iteration))?;
+            let change = self.change(&mut factors, &x, &right, ROUGH);
+            if !change.iter().all(|x| x.is_finite()) {
+                return Err(none(iteration));
+            }
+            let size = self.layout.moved(&change, self.scale);
+            let part = (LARGEST / size).min(1.0);
+            let step: Vec<f64> = change.iter().map(|x| part * x).collect();
+            self.layout.advance(&mut x, &step);
+            // The first change has the loads of the velocities that the iteration starts with, and not those of drives.
+            let converged = size <= CLOSE || size <= STAGNANT && size > 0.3 * before;
+            if iteration > 1 && converged {
+                self.known.keep(&self.numbers, &x);
+                return Ok(x);
+            }
+            before = size;
+        }
+        Err(none(ITERATIONS))
+    }
+
+    /// The change of the unknowns by which the residual changes by `right`, from so many linear
+    /// solutions that refine each other.
+    fn change(
+        &self,
+        factors: &mut Factors,
+        at: &State<f64>,
+        right: &[f64],
+        solutions: usize,
+    ) -> Vec<f64> {
+        let along = self.layout.along(self.model, self.given, at);
+        let mut rest = right.to_vec();
+        factors.solve(&mut rest);
+        let scales = self.layout.scales(&rest, self.mass);
+        let mut out = vec![0.0; right.len()];
+        for solution in 0..solutions {
+            if solution > 0 {
+                rest = along.product(&out);
+                for (rest, right) in rest.iter_mut().zip(right) {
+                    *rest = right - *rest;
+                }
+                factors.solve(&mut rest);
+            }
+            let scaled: Vec<f64> = rest.iter().zip(&scales).map(|(x, s)| x / s).collect();
+            let product = |z: &[f64]| {
+                let x: Vec<f64> = z.iter().zip(&scales).map(|(z, s)| z * s).collect();
+                let mut y = along.product(&x);
+                factors.solve(&mut y);
+                y.iter_mut().zip(&scales).for_each(|(y, s)| *y /= s);
+                y
+            };
+            let z = gmres(product, &scaled, TOLERANCE, PRODUCTS);
+            for ((out, z), s) in out.iter_mut().zip(&z).zip(&scales) {
+                *out += z * s;
+            }
+        }
+        out
+    }
+}

@@ -1,0 +1,306 @@
+//! The loads of a model in motion: generalised forces, their Jacobians, pull-backs and energy.
+//!
+//! For virtual velocities ψ, ψᵀf is the power of a load, linear in ψ. `power.rs` has the forces and
+//! `pull.rs` the transposed derivative of the power, once for each kind and for any scalar. Forces,
+//! Jacobians and pull-backs all use these two, so they agree. Loads that are spread over the elements of a
+//! flexible body act on its coordinates too: `distributed.rs` has all of theirs.
+
+mod distributed;
+mod parameters;
+mod power;
+mod pull;
+pub mod springs;
+
+use super::bodies::{BodyMotion, add6, velocities_of};
+use super::in_motion::InMotion;
+use super::numbering::Numbering;
+use super::placement::guess;
+use super::side::JointSide;
+use super::turns;
+use crate::linalg::Emit;
+use crate::math::{Scalar, Vec3};
+use crate::model::{Axes, DegreeOfFreedom, JointFrame, LoadKind, Model};
+use parameters::give_to_parameters;
+use pull::{Pulled, pull};
+
+/// Both bodies of a load, with its points or frames.
+pub(super) struct Acting<'a, S> {
+    bodies: [Option<usize>; 2],
+    a: JointSide<'a, S>,
+    b: JointSide<'a, S>,
+    /// The angle of the joint with all its turns, if they are counted \[rad\].
+    counted: Option<f64>,
+}
+
+/// Calls `visit(number of the load, its kind, its bodies)` for every load on one or two bodies.
+fn for_each_load<S: Scalar>(
+    model: &Model<S>,
+    motions: &[BodyMotion<S>],
+    mut visit: impl FnMut(usize, &LoadKind<S>, &Acting<S>),
+) {
+    if model.loads.is_empty() {
+        return;
+    }
+    let (ground, nowhere) = (BodyMotion::ground(), JointFrame::zero());
+    let at = |point: &Vec3<S>| JointFrame {
+        point: *point,
+        ..nowhere
+    };
+    let acting = |(body_a, frame_a): (usize, JointFrame<S>),
+                  (body_b, frame_b): (Option<usize>, JointFrame<S>)| Acting {
+        bodies: [Some(body_a), body_b],
+        a: JointSide::fixed(&motions[body_a], frame_a),
+        b: JointSide::fixed(body_b.map_or(&ground, |body| &motions[body]), frame_b),
+        counted: None,
+    };
+    let on_joint = |joint: usize| {
+        let joint = &model.joints[joint];
+        acting((joint.body_a, joint.frame_a), (joint.body_b, joint.frame_b))
+    };
+    for (i, load) in model.loads.iter().enumerate() {
+        let acting = match &load.kind {
+            LoadKind::Force { body, point, .. } => acting((*body, at(point)), (None, nowhere)),
+            LoadKind::Torque { body, .. } => acting((*body, nowhere), (None, nowhere)),
+            LoadKind::Spring {
+                body_a,
+                body_b,
+                point_a,
+                point_b,
+                ..
+            } => acting((*body_a, at(point_a)), (*body_b, at(point_b))),
+            // The angle of a spring is that of the bodies; it does not include drives.
+            LoadKind::TorsionSpring { joint, counter, .. } => {
+                let acting = on_joint(*joint);
+                let ends = [&acting.a.motion.orientation, &acting.b.motion.orientation];
+                let counted = counter.map(|counter| {
+                    let known = motions[counter].position.x.re();
+                    turns::counted(model, (*joint, counter), ends, known)
+                });
+                Acting { counted, ..acting }
+            }
+            LoadKind::Damping { joint, .. }
+            | LoadKind::BallDamping { joint, .. }
+            | LoadKind::Friction { joint, .. } => on_joint(*joint),
+            LoadKind::Distributed(_) => continue,
+        };
+        visit(i, &load.kind, &acting);
+    }
+}
+
+/// Adds the generalised forces f of all loads (force in ground axes, torque in body axes about the
+/// reference point, those on elastic coordinates) to `out`, in velocity numbering.
+pub fn add_forces<S: Scalar>(here: &InMotion<S>, out: &mut [S]) {
+    for_each_load(here.model, here.motions, |_, kind, at| {
+        let forces = power::forces(kind, at, here.time);
+        for (body, (force, torque)) in at.bodies.into_iter().zip(forces) {
+            let Some(body) = body else { continue };
+            add6(&mut out[here.numbering.velocity(body)..], &force, &torque);
+        }
+    });
+    distributed::add_forces(here, out);
+}
+
+/// Adds the forces that supply energy to `out`, in velocity numbering: forces, torques, and loads
+/// on elements. Springs store energy; dampers and friction take it.
+pub fn add_supplying_forces<S: Scalar>(here: &InMotion<S>, out: &mut [S]) {
+    for_each_load(here.model, here.motions, |_, kind, at| {
+        if !matches!(kind, LoadKind::Force { .. } | LoadKind::Torque { .. }) {
+            return;
+        }
+        let forces = power::forces(kind, at, here.time);
+        for (body, (force, torque)) in at.bodies.into_iter().zip(forces) {
+            let Some(body) = body else { continue };
+            add6(&mut out[here.numbering.velocity(body)..], &force, &torque);
+        }
+    });
+    distributed::add_forces(here, out);
+}
+
+/// Non-zero 3 × 3 blocks of the derivative of a load: (linear, angular) parts.
+struct Blocks {
+    /// Forces and torques.
+    rows: [bool; 2],
+    /// Tangent positions.
+    y: [bool; 2],
+    /// Velocities.
+    v: [bool; 2],
+}
+
+fn blocks<S: Scalar>(kind: &LoadKind<S>) -> Blocks {
+    const NONE: [bool; 2] = [false, false];
+    const LINEAR: [bool; 2] = [true, false];
+    const ANGULAR: [bool; 2] = [false, true];
+    const BOTH: [bool; 2] = [true, true];
+    let of = |rows, y, v| Blocks { rows, y, v };
+    // A zero that no design changes has no columns.
+    let damped = |c: &S, columns| if c.is_zero() { NONE } else { columns };
+    match kind {
+        LoadKind::Force { axes, .. } => match axes {
+            Axes::Ground => of(ANGULAR, ANGULAR, NONE),
+            Axes::Body => of(LINEAR, ANGULAR, NONE),
+        },
+        LoadKind::Torque { axes, .. } => match axes {
+            Axes::Ground => of(ANGULAR, ANGULAR, NONE),
+            Axes::Body => of(NONE, NONE, NONE),
+        },
+        LoadKind::Spring { damping, .. } => of(BOTH, BOTH, damped(damping, BOTH)),
+        LoadKind::TorsionSpring { damping, .. } => of(ANGULAR, ANGULAR, damped(damping, ANGULAR)),
+        LoadKind::BallDamping { .. } => of(ANGULAR, ANGULAR, ANGULAR),
+        LoadKind::Damping { dof, .. } | LoadKind::Friction { dof, .. } => match dof {
+            DegreeOfFreedom::Rotation => of(ANGULAR, ANGULAR, ANGULAR),
+            DegreeOfFreedom::Translation => of(BOTH, BOTH, BOTH),
+        },
+        LoadKind::Distributed(_) => of(NONE, NONE, NONE),
+    }
+}
+
+/// Place of the derivatives of the forces, in velocity numbering, and their factors.
+#[derive(Clone, Copy, Debug)]
+pub struct LoadEntries<S> {
+    /// Row of the forces.
+    pub row: usize,
+    /// Column of the tangent positions.
+    pub y: usize,
+    /// Column of the velocities.
+    pub v: usize,
+    /// Factor of ∂f/∂y.
+    pub by_y: S,
+    /// Factor of ∂f/∂v.
+    pub by_v: S,
+}
+
+/// Emits ∂f/∂y and ∂f/∂v with f as in [`add_forces`]; only the non-zero blocks of a load.
+pub fn emit_jacobian<S: Scalar>(here: &InMotion<S>, to: &LoadEntries<S>, emit: &mut dyn Emit<S>) {
+    let numbering = here.numbering;
+    for_each_load(here.model, here.motions, |_, kind, at| {
+        let blocks = blocks(kind);
+        // One row of the Jacobian for each unit virtual velocity of either body.
+        for side in 0..2 {
+            let Some(body) = at.bodies[side] else {
+                continue;
+            };
+            for component in 0..6 {
+                if !blocks.rows[component / 3] {
+                    continue;
+                }
+                let mut psi = [(Vec3::zeros(), Vec3::zeros()); 2];
+                let (linear, angular) = &mut psi[side];
+                [linear, angular][component / 3][component % 3] = S::one();
+                let pulled = pull(kind, at, here.time, &psi);
+                let row = to.row + numbering.velocity(body) + component;
+                for (body, by) in at.bodies.into_iter().zip([&pulled.a, &pulled.b]) {
+                    let Some(body) = body else { continue };
+                    let o = numbering.velocity(body);
+                    let columns = [
+                        (blocks.y, to.y, to.by_y, [&by.position, &by.theta]),
+                        (blocks.v, to.v, to.by_v, [&by.velocity, &by.omega]),
+                    ];
+                    for (wanted, start, scale, parts) in columns {
+                        for part in (0..2).filter(|&part| wanted[part]) {
+                            emit.add_row(row, start + o + 3 * part, &(parts[part] * scale));
+                        }
+                    }
+                }
+            }
+        }
+    });
+    distributed::emit_jacobian(here, to, emit);
+}
+
+/// Destination of the pull-back of the loads.
+pub struct LoadCotangent<'a> {
+    /// Tangent positions, velocity numbering; `None` if not needed.
+    pub y: Option<&'a mut [f64]>,
+    /// Velocities; `None` if not needed.
+    pub v: Option<&'a mut [f64]>,
+    /// Time.
+    pub time: &'a mut f64,
+    /// Parameters of the loads and the frames of their joints.
+    pub model: &'a mut Model<f64>,
+}
+
+/// Adds the derivatives of ψᵀf, with f as in [`add_forces`], in tangent positions, velocities, time
+/// and parameters.
+pub fn pull_back(here: &InMotion<f64>, psi: &[f64], out: &mut LoadCotangent) {
+    let (numbering, time) = (here.numbering, here.time);
+    for_each_load(here.model, here.motions, |i, kind, at| {
+        let psi = at.bodies.map(|body| {
+            body.map_or((Vec3::zeros(), Vec3::zeros()), |body| {
+                velocities_of(&psi[numbering.velocity(body)..])
+            })
+        });
+        let pulled = pull(kind, at, time, &psi);
+        give_to_states(&pulled, at, numbering, (&mut out.y, &mut out.v));
+        give_to_parameters(kind, &pulled, (i, time), (out.model, out.time));
+    });
+    distributed::pull_back(here, psi, out);
+}
+
+fn give_to_states(
+    pulled: &Pulled<f64>,
+    at: &Acting<f64>,
+    numbering: &Numbering,
+    (y, v): (&mut Option<&mut [f64]>, &mut Option<&mut [f64]>),
+) {
+    for (body, by) in at.bodies.into_iter().zip([&pulled.a, &pulled.b]) {
+        let Some(body) = body else { continue };
+        let o = numbering.velocity(body);
+        if let Some(y) = y.as_deref_mut() {
+            add6(&mut y[o..], &by.position, &by.theta);
+        }
+        if let Some(v) = v.as_deref_mut() {
+            add6(&mut v[o..], &by.velocity, &by.omega);
+        }
+    }
+}
+
+/// The first spring of length zero in the placement whose ends may not meet, if any.
+pub fn without_length(model: &Model<f64>) -> Option<&str> {
+    let (q, v) = guess(model);
+    let mut motions = Vec::new();
+    BodyMotion::all(&Numbering::new(model), &q, &v, &mut motions);
+    let mut found = None;
+    for_each_load(model, &motions, |i, kind, at| {
+        if let LoadKind::Spring {
+            rest_length,
+            stiffness,
+            cubic,
+            damping,
+            ..
+        } = kind
+            && let law = [*rest_length, *stiffness, *cubic, *damping]
+            && !power::may_meet(law)
+            && power::stretch(at, law).length == 0.0
+        {
+            found = found.or(Some(i));
+        }
+    });
+    found.map(|i| model.loads[i].name.as_str())
+}
+
+/// Potential energy of the springs, Σ ½ k x² + ¼ k3 x⁴ (torsion springs: Σ ½ k x²) \[J\].
+pub fn potential<S: Scalar>(model: &Model<S>, motions: &[BodyMotion<S>]) -> S {
+    let mut sum = S::zero();
+    for_each_load(model, motions, |_, kind, at| {
+        sum += power::potential(kind, at);
+    });
+    sum
+}
+
+/// Adds `weight` times the derivative of [`potential`] to tangent positions and parameters.
+pub fn pull_potential(
+    model: &Model<f64>,
+    numbering: &Numbering,
+    motions: &[BodyMotion<f64>],
+    weight: f64,
+    y: &mut [f64],
+    cot: &mut Model<f64>,
+) {
+    for_each_load(model, motions, |i, kind, at| {
+        let Some(pulled) = pull::pull_potential(kind, at, weight) else {
+            return;
+        };
+        give_to_states(&pulled, at, numbering, (&mut Some(&mut *y), &mut None));
+        give_to_parameters(kind, &pulled, (i, 0.0), (cot, &mut 0.0));
+    });
+}

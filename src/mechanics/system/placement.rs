@@ -1,0 +1,31 @@
+//! The placement of a model's bodies, and its length scale.
+
+use crate::math::{Scalar, Vec3};
+use crate::model::Model;
+
+/// The placement (q_g, v_g) of the model's bodies, of lengths n_q and n_v.
+pub fn guess<S: Scalar>(model: &Model<S>) -> (Vec<S>, Vec<S>) {
+    let (mut q, mut v) = (Vec::new(), Vec::new());
+    for body in &model.bodies {
+        q.extend(body.position.iter());
+        q.extend(body.orientation);
+        v.extend(body.velocity.iter());
+        v.extend(body.angular_velocity.iter());
+    }
+    (q, v)
+}
+
+/// Length scale of a scene's gaps and motions \[m\]: its largest lever arm or coordinate of a
+/// placement.
+pub fn length_scale<S: Scalar>(model: &Model<S>) -> f64 {
+    let size = |v: &Vec3<S>| v.iter().fold(0.0_f64, |m, x| m.max(x.re().abs()));
+    let joints = model.joints.iter().flat_map(|j| {
+        let (a, b) = (&j.frame_a, &j.frame_b);
+        [size(&a.point), size(&b.point), a.length.re().abs()]
+    });
+    let bodies = model.bodies.iter().enumerate();
+    let bodies = bodies.filter(|(i, _)| !model.is_counter(*i));
+    let bodies = bodies.map(|(_, b)| size(&b.position));
+    let largest = joints.chain(bodies).fold(0.0, f64::max);
+    if largest > 0.0 { largest } else { 1.0 }
+}

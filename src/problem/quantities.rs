@@ -1,0 +1,379 @@
+//! The functions of a scene from those of a problem file.
+
+use super::flexible::{FlexibleBodies, Sections, station, stations};
+use super::placement::{Assembly, GROUND};
+use super::starting_angles::{starting_angle, starting_turn};
+use crate::functions::{
+    Bound, EnergyPart, Function, Gate, GateSide, Instant, Projectile, Reduction, Release, Rotation,
+};
+use crate::math::rotation::{self, compose, conjugate};
+use crate::math::scalar::{lift3, unit};
+use crate::math::{Scalar, Vec3};
+use crate::model::Axes;
+use crate::quantity::vector;
+use crate::schema::Document;
+use crate::schema::functions::{self as written, CountedFrom, Function as Written, OfMotion};
+use crate::schema::measured::{Bound as Side, JointReaction, OfSpring, ReactionAxes};
+use crate::schema::mechanics::Point;
+use crate::system::angular_momentum::AngularMomentum;
+use crate::system::loads::springs::{Spring, SpringPart};
+use crate::system::measures::{End, Wrench, WrenchPart};
+
+/// Makes the functions of a scene.
+pub(super) struct FunctionBuilder<'a, S> {
+    pub document: &'a Document,
+    pub assembly: &'a Assembly<'a, S>,
+    pub gravity: Vec3<S>,
+    pub flexible: &'a FlexibleBodies<S>,
+    /// Mass of all bodies \[kg\].
+    pub mass: S,
+    /// The bodies of the joints, first the one that is not ground.
+    pub ends: Vec<(usize, Option<usize>)>,
+    /// The axes of the joints on the first of them.
+    pub frames: Vec<[Vec3<S>; 3]>,
+    pub x: &'a [S],
+}
+
+impl<S: Scalar> FunctionBuilder<'_, S> {
+    /// The function that a file writes so.
+    pub(super) fn function(&self, function: &Written) -> Function<S> {
+        let reduced = |instant: &written::Instant, reduction| Function::Reduced {
+            instant: self.instant(instant),
+            reduction,
+        };
+        let Some(function) = function.of_motion() else {
+            unreachable!("functions of structures are refused before");
+        };
+        match function {
+            OfMotion::Ks(ks) => {
+                let bound = match ks.bound {
+                    None | Some(Side::Below) => Bound::Below,
+                    Some(Side::Above) => Bound::Above,
+                };
+                reduced(&ks.of, Reduction::Ks { rho: ks.rho, bound })
+            }
+            OfMotion::InducedExponential(ie) => {
+                reduced(&ie.of, Reduction::InducedExponential { rho: ie.rho })
+            }
+            OfMotion::Integral(instant) => reduced(instant, Reduction::Integral),
+            OfMotion::Final(instant) => reduced(instant, Reduction::Final),
+            OfMotion::Clearance(clearance) => self.clearance(clearance),
+            OfMotion::Duration => Function::Duration,
+            OfMotion::Mass => Function::OfDesign {
+                unit: "kg",
+                value: self.mass,
+            },
+        }
+    }
+
+    fn clearance(&self, clearance: &written::Clearance) -> Function<S> {
+        let (range, rho) = released(self.document, &clearance.release)
+            .expect("the release is checked when a problem is read");
+        let projectile = self.projectile(range);
+        Function::Clearance {
+            projectile,
+            release: match rho {
+                None => Release::Final,
+                Some(rho) => Release::Best {
+                    rho,
+                    projectile,
+                    gate: range.gate.as_ref().map(|gate| self.gate(gate)),
+                },
+            },
+            distance: clearance.barrier.distance.get(self.x),
+            top: clearance.barrier.top.get(self.x),
+        }
+    }
+
+    /// The instant quantity that a file writes so.
+    pub(super) fn instant(&self, instant: &written::Instant) -> Instant<S> {
+        use written::{Energy, Instant as I};
+        let parts = |c: &written::Component| {
+            let body = self.body(&c.body);
+            (
+                body,
+                self.point(&c.body, &c.point),
+                vector(&c.direction, self.x),
+            )
+        };
+        match instant {
+            I::Position(component) => {
+                let (body, point, direction) = parts(component);
+                Instant::Position {
+                    body,
+                    point,
+                    direction,
+                }
+            }
+            I::Velocity(component) => {
+                let (body, point, direction) = parts(component);
+                Instant::Velocity {
+                    body,
+                    point,
+                    direction,
+                }
+            }
+            I::Acceleration(component) => {
+                let (body, point, direction) = parts(component);
+                Instant::Acceleration {
+                    body,
+                    point,
+                    direction,
+                }
+            }
+            I::Speed(moving) => Instant::Speed {
+                body: self.body(&moving.body),
+                point: self.point(&moving.body, &moving.point),
+            },
+            I::SpeedSquared(moving) => Instant::SpeedSquared {
+                body: self.body(&moving.body),
+                point: self.point(&moving.body, &moving.point),
+            },
+            I::AngularVelocity(spinning) => Instant::AngularVelocity {
+                body: self.body(&spinning.body),
+                direction: vector(&spinning.direction, self.x),
+            },
+            I::Momentum(momentum) => Instant::Momentum {
+                direction: vector(&momentum.direction, self.x),
+            },
+            I::AngularMomentum(momentum) => Instant::AngularMomentum(AngularMomentum {
+                direction: vector(&momentum.direction, self.x),
+                about: (momentum.about).map_or(Vec3::zeros(), |about| vector(&about, self.x)),
+            }),
+            I::Slide(slide) => Instant::Slide(self.joint(&slide.joint)),
+            I::JointForce(of) => self.reaction(of, WrenchPart::Force),
+            I::JointMoment(of) => self.reaction(of, WrenchPart::Moment),
+            I::SpringLength(of) => self.spring(of, SpringPart::Length),
+            I::SpringForce(of) => self.spring(of, SpringPart::Tension),
+            I::SpringTorque(of) => self.spring(of, SpringPart::Torque),
+            I::Energy(part) => Instant::Energy(match part {
+                Energy::Kinetic => EnergyPart::Kinetic,
+                Energy::Potential => EnergyPart::Potential,
+                Energy::Total => EnergyPart::Total,
+            }),
+            I::Rotation(rotation) => {
+                let axis = vector(&rotation.axis, self.x);
+                let other = rotation.relative_to.as_deref();
+                Instant::Rotation(self.counted_rotation(
+                    [Some(&rotation.body), other],
+                    axis,
+                    rotation.from,
+                ))
+            }
+            I::Angle(angle) => Instant::Rotation(self.joint_angle(&angle.joint)),
+            I::Range(range) => Instant::Range {
+                projectile: self.projectile(range),
+                gate: range.gate.as_ref().map(|gate| self.gate(gate)),
+            },
+            I::ElasticDisplacement(of) => {
+                let point = self.assembly.in_body(&of.body, &of.point);
+                let direction = vector(&of.direction, self.x);
+                (self.flexible).displacement(self.body(&of.body), point, direction)
+            }
+            I::StrainEnergy(of) => Instant::StrainEnergy(self.flexible.index(self.body(&of.body))),
+            I::VonMises(of) => {
+                let body = self.body(&of.body);
+                (self.flexible).shell_stress(body, of.elements.as_ref(), of.rho)
+            }
+            I::SectionForce(of) => {
+                let station = station(self.document, self.assembly, &of.body, &of.station);
+                let sections = self.sections(&of.body, of.beams.as_ref());
+                sections.force(of.component, station)
+            }
+            I::FibreStress(of) => {
+                let station = station(self.document, self.assembly, &of.body, &of.station);
+                let sections = self.sections(&of.body, of.beams.as_ref());
+                sections.stress(station, of.fibre)
+            }
+            I::LargestSectionForce(of) => {
+                let stations = stations(self.document, self.assembly, &of.body, &of.stations);
+                let sections = self.sections(&of.body, of.beams.as_ref());
+                sections.largest_force(of, &stations)
+            }
+            I::LargestFibreStress(of) => {
+                let stations = stations(self.document, self.assembly, &of.body, &of.stations);
+                let sections = self.sections(&of.body, of.beams.as_ref());
+                sections.largest_stress(of, &stations)
+            }
+        }
+    }
+
+    fn sections(&self, body: &str, beams: Option<&String>) -> Sections<'_, S> {
+        let of = (body, self.body(body));
+        self.flexible.sections(self.document, of, beams, self.x)
+    }
+
+    fn joint(&self, name: &str) -> usize {
+        let index = self.document.joints.get_index_of(name);
+        index.expect("a function is of a joint, which is checked")
+    }
+
+    fn spring(&self, of: &OfSpring, part: SpringPart) -> Instant<S> {
+        let load = self.document.loads.get_index_of(&of.load);
+        Instant::Spring(Spring {
+            load: load.expect("a function is of a load, which is checked"),
+            part,
+        })
+    }
+
+    fn reaction(&self, of: &JointReaction, part: WrenchPart) -> Instant<S> {
+        let joint = self.joint(&of.joint);
+        let [first, second] = self.document.joints[joint].between();
+        let first = if first == GROUND { second } else { first };
+        let direction = vector(&of.direction, self.x);
+        let (axes, direction) = match of.axes.unwrap_or_default() {
+            ReactionAxes::Ground => (Axes::Ground, direction),
+            ReactionAxes::Joint => {
+                let [e1, e2, e3] = self.frames[joint];
+                let along = e1 * direction.x + e2 * direction.y + e3 * direction.z;
+                (Axes::Body, along)
+            }
+        };
+        Instant::Reaction(Wrench {
+            joint,
+            on: match of.on.as_ref().is_none_or(|on| on == first) {
+                true => End::A,
+                false => End::B,
+            },
+            part,
+            axes,
+            direction,
+        })
+    }
+
+    fn body(&self, name: &str) -> usize {
+        self.assembly
+            .index(name)
+            .expect("a function is of a body, not of ground")
+    }
+
+    /// A point from the centre of mass \[m\]. The default is the centre of mass.
+    fn point(&self, body: &str, point: &Option<Point>) -> Vec3<S> {
+        point.as_ref().map_or(Vec3::zeros(), |point| {
+            self.assembly.in_body(body, point) - self.assembly.pose(body).centre
+        })
+    }
+
+    /// The projectile of a range. Its direction is made orthogonal to gravity, so that it stays
+    /// horizontal if the design turns gravity.
+    fn projectile(&self, range: &written::Range) -> Projectile<S> {
+        let along = range.direction.map_or(Vec3::x(), |d| vector(&d, self.x));
+        let g = self.gravity;
+        Projectile {
+            body: self.body(&range.body),
+            point: self.point(&range.body, &range.point),
+            direction: unit(along - g * (along.dot(&g) / g.dot(&g))),
+            ground: range.ground.map_or(S::zero(), |ground| ground.get(self.x)),
+        }
+    }
+
+    /// The rotation of the first body relative to the second or to ground, about an axis in ground
+    /// axes as placed. It counts the turns of starts and drives of the joints between them.
+    fn counted_rotation(
+        &self,
+        bodies: [Option<&str>; 2],
+        axis: Vec3<S>,
+        from: Option<CountedFrom>,
+    ) -> Rotation<S> {
+        let [other, body] = [bodies[1], bodies[0]].map(|body| body.unwrap_or(GROUND));
+        let turn = starting_turn(self.document, self.assembly, [other, body], &axis);
+        self.rotation(bodies, axis, from, turn)
+    }
+
+    /// That rotation, where the start turns the bodies by `turn` from their placement, if that is known.
+    fn rotation(
+        &self,
+        [body, other]: [Option<&str>; 2],
+        axis: Vec3<S>,
+        from: Option<CountedFrom>,
+        turn: Option<f64>,
+    ) -> Rotation<S> {
+        let body = body.expect("a rotation is that of a body");
+        let (own, seen_from) = (
+            self.assembly.pose(body),
+            self.assembly.pose(other.unwrap_or(GROUND)),
+        );
+        let placed = compose(&conjugate(&seen_from.orientation), &own.orientation);
+        let seen = seen_from.rotation.tr_mul(&unit(axis));
+        let from = from.unwrap_or_default();
+        let before = match from {
+            CountedFrom::Axes => rotation::twist(&placed, &seen).re(),
+            CountedFrom::Placement => 0.0,
+        };
+        Rotation {
+            body: self.body(body),
+            relative_to: other.and_then(|other| self.assembly.index(other)),
+            axis: seen,
+            placed: match from {
+                CountedFrom::Axes => None,
+                CountedFrom::Placement => Some(conjugate(&placed)),
+            },
+            first: turn.map(|turn| turn + before),
+        }
+    }
+
+    /// The angle of a joint, as in drives and torsion springs.
+    pub(super) fn joint_angle(&self, name: &str) -> Rotation<S> {
+        let joint = &self.document.joints[name];
+        let [first, second] = joint.between().each_ref().map(|body| Some(body.as_str()));
+        let bodies = match first {
+            Some(GROUND) => [second, first],
+            _ => [first, second],
+        };
+        let axis = joint.axes()[0].expect("a joint with an angle has an axis");
+        let axis = self.assembly.axis(axis);
+        let turn = starting_angle(self.document, self.assembly, name);
+        let mut rotation = self.rotation(bodies, axis, Some(CountedFrom::Placement), turn);
+        // On beams it is that of the sections that the joint holds.
+        let index = self.document.joints.get_index_of(name);
+        let (own, other) = self.ends[index.expect("joints are checked")];
+        rotation.body = own;
+        rotation.relative_to = other;
+        rotation
+    }
+
+    fn gate(&self, gate: &written::Gate) -> Gate<S> {
+        let (limit, open) = match (gate.above, gate.below) {
+            (Some(limit), _) => (limit, GateSide::Above),
+            (None, limit) => (
+                limit.expect("a gate has a limit, which is checked when a problem is read"),
+                GateSide::Below,
+            ),
+        };
+        let rotation = match (&gate.joint, gate.axis) {
+            (Some(joint), _) => self.joint_angle(joint),
+            (None, axis) => {
+                let axis =
+                    axis.expect("a gate has an axis, which is checked when a problem is read");
+                let bodies = [gate.body.as_deref(), gate.relative_to.as_deref()];
+                self.counted_rotation(bodies, lift3(&Vec3::from(axis)), gate.from)
+            }
+        };
+        Gate {
+            rotation,
+            limit,
+            width: gate.width,
+            open,
+        }
+    }
+}
+
+/// The range function of this name, and the parameter ρ of its aggregation (`None` for its final
+/// value). `None` if there is no such function or it releases no projectile.
+pub fn released<'a>(
+    document: &'a Document,
+    name: &str,
+) -> Option<(&'a written::Range, Option<f64>)> {
+    let (instant, rho) = match document.functions.get(name)?.of_motion()? {
+        OfMotion::Ks(ks) => (&ks.of, Some(ks.rho)),
+        OfMotion::InducedExponential(aggregate) => (&aggregate.of, Some(aggregate.rho)),
+        OfMotion::Final(instant) => (instant, None),
+        OfMotion::Integral(_) | OfMotion::Clearance(_) | OfMotion::Duration | OfMotion::Mass => {
+            return None;
+        }
+    };
+    match instant {
+        written::Instant::Range(range) => Some((range, rho)),
+        _ => None,
+    }
+}

@@ -1,0 +1,56 @@
+//! Equations of motion, their integration and their derivatives.
+
+#[macro_use]
+#[path = "../reference/json.rs"]
+mod json;
+#[path = "../reference/numbers.rs"]
+mod numbers;
+#[path = "../reference/mod.rs"]
+mod reference;
+
+mod allocations;
+mod checkpoints;
+mod conserves;
+mod constraint_derivatives;
+mod counted_turns;
+mod dead_points;
+mod distributed_loads;
+mod drive_gradients;
+mod drives_that_hit;
+mod element_parts;
+mod elimination;
+mod ends_that_meet;
+mod energy_is_kept;
+mod error_estimate;
+mod events;
+mod finite_elements;
+mod flexible_derivatives;
+mod flexible_gradients;
+mod flexible_motion;
+mod gradients_converge_to_references;
+mod gradients_match_complex_step;
+mod initial_conditions;
+mod joint_starts;
+mod joint_starts_in_loops;
+mod joints_and_drives;
+mod kinks;
+mod krylov_solver;
+mod limits_of_rounding;
+mod load_derivatives;
+mod loads;
+mod lowering;
+mod methods_match_references;
+mod newton_krylov;
+mod node_kinematics;
+mod planar_joints;
+mod reaction_functions;
+mod reactions_carry_weight;
+mod reduced_shells;
+mod redundant_joints;
+mod rotating_plates;
+mod rounded_joints;
+mod side_by_side;
+mod singular_positions;
+mod steps_in_use;
+mod turned_factors;
+mod work_of_gradients;

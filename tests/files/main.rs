@@ -1,0 +1,53 @@
+//! Contents of files: problems, records, figures, documents, and the layers of the source.
+
+#[macro_use]
+#[path = "../reference/json.rs"]
+mod json;
+#[path = "../reference/mod.rs"]
+mod reference;
+
+mod at_rest;
+mod axes_of_beams;
+mod beam_scenes;
+mod beams;
+mod benchmarks;
+mod buckling;
+mod circles;
+mod committed_problems;
+mod distributed_loads;
+pub mod element_parts;
+mod element_sections;
+mod element_starts;
+mod element_steps;
+mod equilibrium;
+mod faults;
+pub mod finite_elements;
+mod fixed_steps;
+mod flexible_families;
+mod flexible_scenes;
+mod held_edges;
+mod last_modes;
+mod lateral;
+mod layers;
+mod modal;
+mod modal_faults;
+mod modal_scenes;
+mod problems_check;
+mod readme;
+mod reduced_shells;
+mod relative_equilibrium;
+mod report_plots;
+mod report_records;
+mod second_order;
+mod shell_hinges;
+mod shell_pictures;
+mod smoothed;
+mod stability;
+mod static_faults;
+mod statics;
+mod stationary;
+mod stress_per_thickness;
+mod stress_pictures;
+mod thickness_sheet;
+mod trebuchets;
+mod unfollowed;
