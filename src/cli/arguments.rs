@@ -2,7 +2,7 @@
 
 use super::new::Starter;
 use super::range::{Range, range};
-use clap::{ArgAction, Args, Parser, Subcommand};
+use clap::{Args, Parser, Subcommand};
 use std::path::PathBuf;
 
 /// The page of `--help`: the commands that most users need come first.
@@ -27,7 +27,6 @@ Most used:
     version,
     args_conflicts_with_subcommands = true,
     arg_required_else_help = true,
-    disable_help_flag = true,
     help_template = PAGE,
     after_help = "More options: `optimize manual | man -l -`. Of a command: `optimize COMMAND --help`.\n\
                   Exit codes: 0 done; 1 not converged, or a check or comparison failed; 2 bad input;\n\
@@ -43,9 +42,6 @@ pub(crate) struct Arguments {
     /// Start and options of the optimisation.
     #[command(flatten)]
     pub course: RunOptions,
-    /// Prints this page.
-    #[arg(long, short, action = ArgAction::HelpShort)]
-    pub help: Option<bool>,
 }
 
 /// Start and options of an optimisation.

@@ -105,6 +105,13 @@ fn code_of_reading(error: &io::Error) -> u8 {
 
 /// Runs the command with the given arguments; the first is the program's name.
 pub fn run(arguments: impl Iterator<Item = OsString>) -> ExitCode {
+    let mut arguments: Vec<OsString> = arguments.collect();
+    // The page of the whole program fits on a screen; the manual has the rest.
+    if let [_, only] = &mut arguments[..]
+        && (only == "--help" || only == "help")
+    {
+        *only = "-h".into();
+    }
     let arguments = match Arguments::try_parse_from(arguments) {
         Ok(arguments) => arguments,
         Err(message) => {

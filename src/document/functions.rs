@@ -25,31 +25,31 @@ pub enum Function {
     Integral(Instant),
     /// Value at the end of the run.
     Final(Instant),
-    /// Height of a flight path above the top of a barrier [m].
+    /// Height of a flight path above the top of a barrier \[m\].
     Clearance(Clearance),
-    /// Duration of the run; with `until`, the time of the event [s].
+    /// Duration of the run; with `until`, the time of the event \[s\].
     Duration,
-    /// Mass of all bodies, or of all structures [kg].
+    /// Mass of all bodies, or of all structures \[kg\].
     Mass,
-    /// Coordinate of the centre of mass of all structures [m].
+    /// Coordinate of the centre of mass of all structures \[m\].
     CentreOfMass(CentreOfMass),
     /// Moment of inertia of all structures about an axis through their centre of mass [kg m²].
     MomentOfInertia(MomentOfInertia),
-    /// Strain energy of a load case [J].
+    /// Strain energy of a load case \[J\].
     StrainEnergy(OfCase),
-    /// Work of the loads of a case in its displacements [J].
+    /// Work of the loads of a case in its displacements \[J\].
     Compliance(OfCase),
-    /// Mean displacement of a set of nodes [m].
+    /// Mean displacement of a set of nodes \[m\].
     Displacement(Displacement),
-    /// Force of the supports on a set of nodes [N].
+    /// Force of the supports on a set of nodes \[N\].
     Reaction(StaticReaction),
     /// Moment of the supports on a set of nodes [N m].
     ReactionMoment(ReactionMoment),
     /// Aggregate of von Mises stress by yield stress.
     VonMises(Stress),
-    /// A natural frequency [Hz].
+    /// A natural frequency \[Hz\].
     Frequency(Frequency),
-    /// Smooth lower bound of the natural frequencies [Hz].
+    /// Smooth lower bound of the natural frequencies \[Hz\].
     LowestFrequency(LowestFrequency),
 }
 
@@ -134,7 +134,7 @@ pub struct Aggregate {
 #[derive(Clone, Debug, Deserialize, JsonSchema)]
 #[serde(rename_all = "snake_case", deny_unknown_fields)]
 pub enum Instant {
-    /// Component of a point's position [m].
+    /// Component of a point's position \[m\].
     Position(Component),
     /// Component of a point's velocity [m/s].
     Velocity(Component),
@@ -150,39 +150,39 @@ pub enum Instant {
     Momentum(Momentum),
     /// Component of the angular momentum of the whole scene about a fixed point [kg m²/s].
     AngularMomentum(AngularMomentum),
-    /// Energy of the whole scene [J].
+    /// Energy of the whole scene \[J\].
     Energy(Energy),
-    /// Rotation of a body about an axis [rad], counted over whole turns.
+    /// Rotation of a body about an axis \[rad\], counted over whole turns.
     Rotation(Rotation),
-    /// Angle of a joint [rad] as in drives and torsion springs, counted over whole turns.
+    /// Angle of a joint \[rad\] as in drives and torsion springs, counted over whole turns.
     Angle(JointAngle),
-    /// Displacement of a joint along its axis [m].
+    /// Displacement of a joint along its axis \[m\].
     Slide(JointSlide),
-    /// Component of the force by which a joint acts on a body [N].
+    /// Component of the force by which a joint acts on a body \[N\].
     JointForce(JointReaction),
     /// Component of the moment by which a joint acts on a body [N m], that of its drive included.
     JointMoment(JointReaction),
-    /// Distance of the points of a spring [m].
+    /// Distance of the points of a spring \[m\].
     SpringLength(OfSpring),
-    /// Force by which a spring pulls its points together [N], damping included.
+    /// Force by which a spring pulls its points together \[N\], damping included.
     SpringForce(OfSpring),
     /// Torque by which a torsion spring turns its joint back [N m], damping included.
     SpringTorque(OfSpring),
-    /// Range of a projectile that is released at this instant [m].
+    /// Range of a projectile that is released at this instant \[m\].
     Range(Range),
     /// Von Mises stress by yield stress of a body of shells, aggregated over both faces of their Gauss points.
     VonMises(ShellStress),
-    /// Displacement of a point of a beam or of shells from where it is in the undeformed body [m].
+    /// Displacement of a point of a beam or of shells from where it is in the undeformed body \[m\].
     ElasticDisplacement(ElasticDisplacement),
-    /// Strain energy of a beam or of shells [J].
+    /// Strain energy of a beam or of shells \[J\].
     StrainEnergy(OfBeam),
-    /// Force [N] or moment [N m] in a section of a beam.
+    /// Force \[N\] or moment \[N m\] in a section of a beam.
     SectionForce(SectionForce),
-    /// Stress of bending and stretch along a fibre of a beam [Pa].
+    /// Stress of bending and stretch along a fibre of a beam \[Pa\].
     FibreStress(FibreStress),
-    /// Largest force [N] or moment [N m] of several sections of a beam, by a smooth maximum.
+    /// Largest force \[N\] or moment \[N m\] of several sections of a beam, by a smooth maximum.
     LargestSectionForce(LargestSectionForce),
-    /// Largest stress of bending and stretch of several sections and fibres of a beam, by a smooth maximum [Pa].
+    /// Largest stress of bending and stretch of several sections and fibres of a beam, by a smooth maximum \[Pa\].
     LargestFibreStress(LargestFibreStress),
 }
 

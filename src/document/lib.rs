@@ -66,7 +66,7 @@ pub struct Document {
     #[schemars(extend("unit" = "m/s²"))]
     pub gravity: Option<Vector>,
     /// How well rounded numbers fit: joints of loops may miss each other by this part of the size of
-    /// their loop and by this angle [rad], and an inertia may miss that of a solid by this part.
+    /// their loop and by this angle \[rad\], and an inertia may miss that of a solid by this part.
     /// What is left out is said. Default 1e-5.
     #[schemars(extend(
         "minimum" = 1e-13,
@@ -169,7 +169,7 @@ pub struct Simulation {
         "design_variable" = "a number of samples is a count, not a physical number"
     ))]
     pub samples: Option<usize>,
-    /// Longest wall time of one simulation [s], default none. The number of steps is limited, too.
+    /// Longest wall time of one simulation \[s\], default none. The number of steps is limited, too.
     #[schemars(extend(
         "exclusiveMinimum" = 0,
         "design_variable" = "a limit of the run is the computer's, not a physical number"
@@ -344,7 +344,7 @@ pub struct Optimiser {
         "design_variable" = "a number of simulations is a count, not a physical number"
     ))]
     pub evaluations: Option<usize>,
-    /// Longest wall time of the run [s].
+    /// Longest wall time of the run \[s\].
     #[schemars(extend(
         "exclusiveMinimum" = 0,
         "design_variable" = "a limit of the run is the optimiser's, not a physical number"
@@ -483,7 +483,7 @@ mod tests {
     #[test]
     fn the_schema_describes_every_key_and_says_of_every_number_what_it_is() {
         let mut numbers = 0;
-        properties(&schema(), "", &mut |at, property| {
+        properties(schema(), "", &mut |at, property| {
             // The single key of an alternative is described with the alternative.
             let described = property["description"].is_string();
             assert!(described || at.contains("oneOf"), "{at} has no description");

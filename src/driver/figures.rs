@@ -123,7 +123,11 @@ fn scenery(drawing: &Drawing) -> Scenery {
             let sign = if axis[i] < 0.0 { "−" } else { "+" };
             format!(" {sign} {} {}", axis[i].abs(), NAMES[i])
         };
-        format!("{}{} [m]", NAMES[main], others.map(other).collect::<String>())
+        format!(
+            "{}{} [m]",
+            NAMES[main],
+            others.map(other).collect::<String>()
+        )
     };
     Scenery {
         ground: drawing.ground,

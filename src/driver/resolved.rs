@@ -2,7 +2,7 @@
 //!
 //! The steps bound the error of the motion, and adaptive explicit ones that of its tangent (see
 //! `integrate/explicit/tangent.rs`). What is left is found by halving every step
-//! ([`error`](super::error)): a derivative counts as unresolved if its estimated error is a tenth of
+//! ([`error`]): a derivative counts as unresolved if its estimated error is a tenth of
 //! its size or more. A derivative that is small in the gradient of its function, each variable in
 //! its scale, is judged by a tenth of the largest one; one that changes the function by less than
 //! its round-off counts as zero.

@@ -94,7 +94,7 @@ pub(super) fn parse(written: &str, file: &str, overrides: &[Override]) -> Result
         findings.extend(change.apply(&mut document).err());
     }
     findings.extend(text::faults(&document));
-    let structure = walk(&document, &schema::schema());
+    let structure = walk(&document, schema::schema());
     findings.extend(structure.findings.iter().cloned());
     let faults = |findings| Err(Faults::locate(findings, file, &source, overrides));
     let mut sound = document.clone();

@@ -23,8 +23,16 @@ fn help_and_version() {
     assert!(first.is_some_and(|line| line.contains("optimize new")));
     assert_eq!(help.out, expect(0, at.path(), &["-h"]).out);
     let manual = expect(0, at.path(), &["manual"]).out.replace("\\-", "-");
-    for option in ["--memory", "--sensitivity", "--no-certificate", "--accuracy"] {
-        assert!(!help.out.contains(option) && manual.contains(option), "{option}");
+    for option in [
+        "--memory",
+        "--sensitivity",
+        "--no-certificate",
+        "--accuracy",
+    ] {
+        assert!(
+            !help.out.contains(option) && manual.contains(option),
+            "{option}"
+        );
     }
     let version = expect(0, at.path(), &["--version"]);
     assert_eq!(

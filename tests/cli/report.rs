@@ -136,6 +136,52 @@ fn structures_and_bodies_that_deform_are_meshes() {
     }
 }
 
+/// The forces of a page are those of the table of the simulation, at the joints.
+#[test]
+fn forces_are_the_reactions_of_the_table() {
+    let at = scratch();
+    expect(
+        0,
+        at.path(),
+        &["simulate", HAMMER, "--output", "out", "--report"],
+    );
+    let shown = data(&read(&at.path().join("out/report.html")));
+    let stage = &shown["stages"][0];
+    let table = read(&at.path().join("out/simulation.csv"));
+    let mut lines = table
+        .lines()
+        .map(|line| line.split(',').collect::<Vec<_>>());
+    let names = lines.next().expect("names");
+    let rows: Vec<Vec<f64>> = lines
+        .map(|row| row.iter().map(|x| x.parse().expect("a number")).collect())
+        .collect();
+    let arrows = stage["arrows"].as_array().expect("arrows");
+    assert_eq!(arrows.len(), 2);
+    for arrow in arrows {
+        let name = arrow["name"].as_str().expect("a name");
+        let (joint, _) = name.split_once(", on ").expect("a joint and a body");
+        let first = format!("{joint}: force x [N]");
+        let column = names
+            .iter()
+            .position(|own| *own == first)
+            .expect("a column");
+        let times = stage["times"].as_array().expect("times");
+        let forces = arrow["forces"].as_array().expect("forces");
+        assert_eq!(times.len(), forces.len());
+        for (t, force) in times.iter().zip(forces) {
+            let t = t.as_f64().expect("a number");
+            let row = rows.iter().find(|row| row[0] == t).expect("the instant");
+            for k in 0..3 {
+                let (exact, own) = (row[column + k], force[3 + k].as_f64().expect("a number"));
+                assert!(
+                    (own - exact).abs() <= 1e-5 * exact.abs() + 1e-300,
+                    "{name} at {t}"
+                );
+            }
+        }
+    }
+}
+
 /// While a run goes on its page is read again by itself and shows the convergence; at the end it is the report.
 #[test]
 fn a_run_can_be_watched() {
@@ -253,4 +299,43 @@ fn a_browser_shows_the_machine_at_an_instant() {
     ];
     assert!(first != picture("d.png", "#t=0", &dark), "dark");
     picture("e.png", "#t=0", &["--window-size=390,800"]);
+    // What a user does: the box of the forces, keys that turn the view, the limits of colours.
+    let text = read(&page);
+    let changed = |act: &str| {
+        let act = format!("<script>{act}</script></body>");
+        std::fs::write(&page, text.replace("</body>", &act)).expect("written");
+        assert!(first != picture("f.png", "#t=0", &wide), "{act}");
+    };
+    changed("document.getElementById('forces').click()");
+    let key = "document.getElementById('scene0').dispatchEvent(new KeyboardEvent('keydown', {key: 'ArrowLeft'}))";
+    changed(key);
+    std::fs::write(&page, &text).expect("written");
+    assert!(first == picture("g.png", "#t=0", &wide), "as before");
+}
+
+/// Limits of the colours that a user sets change the colours of a body that deforms.
+#[test]
+fn a_browser_takes_limits_of_colours() {
+    let Some(browser) = browser() else { return };
+    let at = scratch();
+    expect(
+        0,
+        at.path(),
+        &["simulate", PLATE, "--output", "out", "--report"],
+    );
+    let page = at.path().join("out/report.html");
+    let text = read(&page);
+    let mut pictures = Vec::new();
+    for value in ["", "1e8"] {
+        let act = format!(
+            "<script>const own = document.getElementById('colour1'); own.value = '{value}'; own.onchange();</script></body>"
+        );
+        std::fs::write(&page, text.replace("</body>", &act)).expect("written");
+        let path = at.path().join("a.png");
+        let shot = format!("--screenshot={}", path.display());
+        let (_, said) = opened(browser, &page, "", &[&shot, "--window-size=1100,900"]);
+        assert_eq!(said, "");
+        pictures.push(std::fs::read(&path).expect("a picture"));
+    }
+    assert!(pictures[0] != pictures[1]);
 }

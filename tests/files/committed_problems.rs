@@ -332,7 +332,7 @@ const EVERYTHING: &str = r#"{
 /// [`EVERYTHING`] with a design variable at every number that admits one.
 fn everything() -> (serde_json::Value, Problem) {
     let mut document: serde_json::Value = serde_json::from_str(EVERYTHING).expect("JSON");
-    let structure = structure::walk(&document, &schema());
+    let structure = structure::walk(&document, schema());
     assert!(structure.findings.is_empty(), "{:?}", structure.findings);
     let open = structure
         .numbers

@@ -35,7 +35,7 @@ where
     (sums[0] + sums[1]) + (sums[2] + sums[3]) + rest
 }
 
-/// Σ a_i x at places[i], by four sums, because an addition waits for the one before.
+/// Σ a_i x at places\[i\], by four sums, because an addition waits for the one before.
 #[inline(always)]
 pub fn dot_at<S: Scalar>(a: &[S], places: &[usize], x: &[S]) -> S {
     let (a4, a) = a.as_chunks::<4>();

@@ -4,8 +4,7 @@ use super::evaluate::sample;
 use super::turning::turns;
 use super::{Function, Instant, Reduction};
 use crate::integrate::Trajectory;
-use crate::linalg::SolveScalar;
-use crate::math::{Parameters, Scalar, parameters};
+use crate::math::{Complex64, Parameters, Scalar, parameters};
 use crate::model::Model;
 use crate::system::failure::AssemblyFailure;
 
@@ -46,13 +45,12 @@ impl<S: Scalar> TerminalEvent<S> {
             value,
         }
     }
+}
 
+impl TerminalEvent<Complex64> {
     /// g − c at the end of a run.
-    pub fn gap(&self, model: &Model<S>, run: &Trajectory<S>) -> S
-    where
-        S: SolveScalar,
-    {
-        self.measure.evaluate_in(model, run).value - self.value
+    pub fn gap(&self, model: &Model<Complex64>, run: &Trajectory<Complex64>) -> Complex64 {
+        self.measure.evaluate(model, run).value - self.value
     }
 }
 

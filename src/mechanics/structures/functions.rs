@@ -12,7 +12,7 @@ use super::state::{Configuration, Cotangent, NodalMotion};
 use super::statics::StaticProblem;
 use super::structure::Structure;
 use crate::math::soft_max::SoftMax;
-use crate::math::{Scalar, Vec3};
+use crate::math::{Complex64, Scalar, Vec3};
 
 /// A function of a structure. Load cases are numbered as they were solved.
 #[derive(Clone, Debug, PartialEq)]
@@ -147,7 +147,7 @@ impl<S: Scalar> Solved<'_, S> {
     ///
     /// # Errors
     /// [`UnknownSet`] if the function names no set of the mesh.
-    pub fn value(&self, function: &Function) -> Result<S, UnknownSet> {
+    fn value_in(&self, function: &Function) -> Result<S, UnknownSet> {
         let configuration = self.configuration();
         let mesh = &self.structure.topology.mesh;
         let motion = |case: usize| configuration.spread(&self.solutions[case]);
@@ -241,7 +241,25 @@ impl<S: Scalar> Solved<'_, S> {
     }
 }
 
+impl Solved<'_, Complex64> {
+    /// The value of a function.
+    ///
+    /// # Errors
+    /// [`UnknownSet`] if the function names no set of the mesh.
+    pub fn value(&self, function: &Function) -> Result<Complex64, UnknownSet> {
+        self.value_in(function)
+    }
+}
+
 impl Solved<'_, f64> {
+    /// The value of a function.
+    ///
+    /// # Errors
+    /// [`UnknownSet`] if the function names no set of the mesh.
+    pub fn value(&self, function: &Function) -> Result<f64, UnknownSet> {
+        self.value_in(function)
+    }
+
     /// Partial derivatives of a function by the motions, the structure and the loads.
     pub(super) fn partial(
         &self,

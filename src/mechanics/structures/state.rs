@@ -5,7 +5,7 @@ use super::structure::Structure;
 use super::supports::{NodeUnknowns, Normal, Rotations, Unknowns};
 use crate::math::{Scalar, Vec3};
 
-/// Displacements [m] and rotations [rad] of the nodes in global axes; or forces [N] and moments [N m].
+/// Displacements \[m\] and rotations \[rad\] of the nodes in global axes; or forces \[N\] and moments \[N m\].
 #[derive(Clone, Debug, PartialEq)]
 pub struct NodalMotion<S> {
     /// u of each node.

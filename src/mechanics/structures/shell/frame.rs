@@ -10,7 +10,7 @@
 
 use crate::math::{Scalar, Vec3, scalar::length};
 
-/// Area J = |a_r × a_s| of the tangents at a point [m²].
+/// Area J = |a_r × a_s| of the tangents at a point \[m²\].
 pub fn area<S: Scalar>(tangents: &[Vec3<S>; 2]) -> S {
     length(&tangents[0].cross(&tangents[1]))
 }
@@ -24,7 +24,7 @@ pub fn add_area_transpose<S: Scalar>(tangents: &[Vec3<S>; 2], bar: S, to: &mut [
     to[1] += bar.cross(ar);
 }
 
-/// The frame at a point: T [1/m], rows r and s, columns 1 and 2, and the area J [m²]; or cotangents.
+/// The frame at a point: T \[1/m\], rows r and s, columns 1 and 2, and the area J \[m²\]; or cotangents.
 #[derive(Clone, Copy, Debug)]
 pub struct Frame<S> {
     pub t: [[S; 2]; 2],
@@ -67,7 +67,7 @@ impl<S: Scalar> Frame<S> {
         }
     }
 
-    /// The frame of the tangents a_r and a_s [m] along a reference direction.
+    /// The frame of the tangents a_r and a_s \[m\] along a reference direction.
     #[inline]
     pub fn of(tangents: &[Vec3<S>; 2], reference: &Vec3<S>) -> Self {
         let axes = Axes::new(tangents, reference);

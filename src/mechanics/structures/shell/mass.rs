@@ -52,7 +52,7 @@ impl<S: Scalar> Shell<S> {
         [0, 1].map(|k| sum(&TABLES.gauss[point].by[k], &self.geometry.points))
     }
 
-    /// The area that a Gauss point stands for, weight times J [m²].
+    /// The area that a Gauss point stands for, weight times J \[m²\].
     pub fn area(&self, point: usize) -> S {
         frame::area(&self.tangents(point)) * TABLES.weights[point]
     }
