@@ -258,6 +258,9 @@ pub enum Start {
 #[derive(Clone, Debug, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 pub struct Variable {
+    /// Remark for readers of the file.
+    #[serde(rename = "description")]
+    pub _description: Option<String>,
     /// JSON Pointer to the number, such as /bodies/arm/mass.
     pub path: Option<String>,
     /// JSON Pointers to several numbers with one value, instead of `path`.
@@ -291,6 +294,9 @@ pub enum Objective {
 #[derive(Clone, Debug, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 pub struct Constraint {
+    /// Remark for readers of the file.
+    #[serde(rename = "description")]
+    pub _description: Option<String>,
     /// Name of the function.
     pub function: String,
     /// Smallest value, default none.

@@ -13,6 +13,9 @@ use serde::Deserialize;
 #[derive(Clone, Debug, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 pub struct Body {
+    /// Remark for readers of the file.
+    #[serde(rename = "description")]
+    pub _description: Option<String>,
     /// A homogeneous solid, centred at the origin of the body's axes; it gives the inertia.
     pub shape: Option<Shape>,
     /// Density of the shape, instead of a mass.

@@ -10,6 +10,9 @@ use serde::Deserialize;
 #[derive(Clone, Debug, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 pub struct Structure {
+    /// Remark for readers of the file.
+    #[serde(rename = "description")]
+    pub _description: Option<String>,
     /// The mesh, by a generator.
     pub mesh: Mesh,
     /// Name of the material.

@@ -5,7 +5,7 @@ use super::elastic_figures::{colours, deflections, stresses};
 use super::ends::Ends;
 use super::forces::arrows;
 use super::optimise::asked;
-use super::shapes::{Detail, shape};
+use super::shapes::{Detail, shape, thickness};
 use super::simulate::Simulation;
 use super::statics::stages as of_structures;
 use super::traces;
@@ -14,7 +14,7 @@ use crate::functions::evaluate::sample;
 use crate::functions::snapshot::Snapshot;
 use crate::functions::turning::turns;
 use crate::math::Vec3;
-use crate::problem::{Drawing, Problem};
+use crate::problem::{Drawing, Outline, Problem};
 use crate::report::page::{Body, Chart, Curve, Link, Stage, convergence, rounded};
 use crate::report::plots::{ConnectorKind, History as Curves};
 use crate::report::{History, Optimum, page};
@@ -63,7 +63,11 @@ pub fn page(
         .collect();
     let mut notes = Vec::new();
     let mut stages = of_structures::stages(problem, &ends.structures);
-    stages.extend(motions.iter().map(|own| stage(own, &mut notes)));
+    for own in &motions {
+        let (still, moving) = stage(own, &mut notes);
+        stages.extend(still);
+        stages.push(moving);
+    }
     share_scales(&mut stages);
     let mut charts = of_run.map_or_else(Vec::new, |(_, history)| convergence(history));
     charts.extend(curves(problem, &motions));
@@ -204,8 +208,8 @@ fn curves(problem: &Problem, motions: &[Shown]) -> Vec<Chart> {
     all
 }
 
-/// A design in motion.
-fn stage(shown: &Shown, notes: &mut Vec<String>) -> Stage {
+/// The thickness of the shells of a design if they differ, and the design in motion.
+fn stage(shown: &Shown, notes: &mut Vec<String>) -> (Option<Stage>, Stage) {
     let Shown {
         title,
         simulation,
@@ -234,6 +238,14 @@ fn stage(shown: &Shown, notes: &mut Vec<String>) -> Stage {
             shape: shape((simulation, drawing), body, &frames, &detail),
         })
         .collect();
+    let still = || {
+        let shapes = bodies().filter_map(|body| {
+            let shape = thickness((simulation, drawing), body, &frames, &detail)?;
+            let name = model.bodies[body].name.clone();
+            Some(Body { name, shape })
+        });
+        shapes.collect::<Vec<Body>>()
+    };
     let list = |v: &Vec3<f64>| -> [f64; 3] { [v.x, v.y, v.z].map(rounded) };
     let link = |own: Joined| Link {
         kind: match own.kind {
@@ -260,7 +272,7 @@ fn stage(shown: &Shown, notes: &mut Vec<String>) -> Stage {
         ));
     }
     let coloured = colours(model, drawing, std::slice::from_ref(stresses));
-    Stage {
+    let moving = Stage {
         title: (*title).to_owned(),
         times: frames.iter().map(|&k| run.time(k)).collect(),
         swings: false,
@@ -279,7 +291,42 @@ fn stage(shown: &Shown, notes: &mut Vec<String>) -> Stage {
             Some(own) => format!("stress [Pa] {}", own.notes.join(", ")),
             None => String::new(),
         },
-    }
+    };
+    (of_thickness(&moving, drawing, still), moving)
+}
+
+/// The machine at its start in the colours of the thickness of its shells; `None` if all have one.
+fn of_thickness(
+    moving: &Stage,
+    drawing: &Drawing,
+    bodies: impl Fn() -> Vec<Body>,
+) -> Option<Stage> {
+    let lines = drawing.outlines.iter().filter_map(|outline| match outline {
+        Outline::Shells(line) => Some(line.thickness.iter()),
+        _ => None,
+    });
+    let [least, most] = lines.flatten().fold([f64::INFINITY, 0.0], |[a, b], &h| {
+        [a.min(h), f64::max(b, h)]
+    });
+    let differ = most > least * (1.0 + 1e-9);
+    differ.then(|| Stage {
+        title: match moving.title.is_empty() {
+            true => "thickness".to_owned(),
+            false => format!("thickness, {}", moving.title),
+        },
+        times: vec![0.0],
+        swings: false,
+        clock: "",
+        bodies: bodies(),
+        links: Vec::new(),
+        arrows: Vec::new(),
+        paths: Vec::new(),
+        view: moving.view,
+        ground: None,
+        barrier: None,
+        range: Some([1e3 * least, 1e3 * most]),
+        label: "h [mm]".to_owned(),
+    })
 }
 
 /// Instants that are shown, fewer where each takes many numbers.

@@ -218,3 +218,35 @@ fn of_shells(
         values: frames.iter().map(values).collect(),
     }
 }
+
+/// The shells of a body at the first of the frames, in the values of their thickness \[mm\]; `None` without shells.
+pub(super) fn thickness(
+    shown: (&Simulation, &Drawing),
+    body: usize,
+    frames: &[usize],
+    detail: &Detail,
+) -> Option<Shape> {
+    let Outline::Shells(line) = &shown.1.outlines[body] else {
+        return None;
+    };
+    let first = &frames[..frames.len().min(1)];
+    let shape = of_shells(shown, body, &line.mesh, (first, detail));
+    let Shape::Mesh { faces, places, .. } = shape else {
+        return None;
+    };
+    let of_element = if detail.is_thinned() {
+        1
+    } else {
+        QUARTERS.len()
+    };
+    let shells = of_element * line.thickness.len();
+    let each = line
+        .thickness
+        .iter()
+        .flat_map(|h| std::iter::repeat_n(rounded(1e3 * h), of_element));
+    Some(Shape::Mesh {
+        faces: faces.into_iter().take(shells).collect(),
+        places,
+        values: vec![each.collect()],
+    })
+}

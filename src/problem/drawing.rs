@@ -6,6 +6,7 @@ use super::elastic_drawing::{
 };
 use super::fibres::{BeamFibres, fibres};
 use super::placement::Assembly;
+use super::statics::properties::thickness;
 use crate::math::Vec3;
 use crate::model::Model;
 use crate::quantity::vector;
@@ -144,9 +145,12 @@ fn outlines(
     let mut all: Vec<Outline> = written
         .map(
             |(body, pose)| match (&body.beam, &body.elements, &body.modal) {
-                (None, Some(elements), _) => Outline::Shells(shell_line(
-                    &super::elements::prepared(document, elements).mesh,
-                )),
+                (None, Some(elements), _) => {
+                    let prepared = super::elements::prepared(document, elements);
+                    let of = |&slot: &usize| thickness(&elements.structure, slot).get(x);
+                    let thickness = prepared.slots.iter().map(of).collect();
+                    Outline::Shells(shell_line(&prepared.mesh, thickness))
+                }
                 (Some(beam), _, _) => {
                     let sight = pose.rotation.tr_mul(&towards);
                     Outline::Deformed(beam_outline(&super::beam::beam(beam, x), &sight))

@@ -54,10 +54,12 @@ pub struct ShellLine {
     pub mesh: Arc<ElementMesh>,
     /// The nodes, in their order along the line.
     pub nodes: Vec<usize>,
+    /// Thickness of each shell \[m\].
+    pub thickness: Vec<f64>,
 }
 
 /// The free edges of shells, one after the other, with the beams that start from them, there and back.
-pub(super) fn shell_line(mesh: &Arc<ElementMesh>) -> ShellLine {
+pub(super) fn shell_line(mesh: &Arc<ElementMesh>, thickness: Vec<f64>) -> ShellLine {
     let edges = |element: &ShellElement| {
         let nodes = element.nodes;
         EDGES.map(|edge| edge.map(|local| nodes[local]))
@@ -89,6 +91,7 @@ pub(super) fn shell_line(mesh: &Arc<ElementMesh>) -> ShellLine {
     ShellLine {
         mesh: mesh.clone(),
         nodes,
+        thickness,
     }
 }
 
