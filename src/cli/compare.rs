@@ -2,7 +2,7 @@
 
 use super::arguments::Comparison;
 use super::earlier::state_in;
-use super::{DONE, Failure, NOT_REACHED, REPORT, print, record};
+use super::{DONE, Failure, NOT_REACHED, REPORT, print, record, shown, tell};
 use crate::driver::figures;
 use crate::driver::page::page;
 use crate::driver::recorded::Recorded;
@@ -54,6 +54,11 @@ fn from_record(
     directory: &Path,
     make: impl Fn(&Optimum, &Recorded, &History) -> Result<Vec<figures::NamedFile>, Failure>,
 ) -> Result<u8, Failure> {
+    // The record itself stands for its directory.
+    let directory = match (directory.is_file(), directory.parent()) {
+        (true, Some(above)) if directory.ends_with("optimum.json") => above,
+        _ => directory,
+    };
     let (_, optimum) = record(directory)?;
     let history = read_text(&directory.join("history.csv"))?;
     let history = History::from_csv(&history)?;
@@ -65,6 +70,8 @@ fn from_record(
         .map(|(name, bytes)| (directory.join(name), bytes))
         .collect();
     write_all(&files)?;
+    let names = files.iter().map(|(path, _)| format!("{}\n", shown(path)));
+    tell(&names.collect::<String>());
     Ok(DONE)
 }
 

@@ -288,6 +288,16 @@ fn read_with(job: &Job, overrides: &[Override]) -> Result<Problem, Failure> {
     Ok(problem)
 }
 
+/// Refuses --report where no page is written.
+fn no_page(job: &Job, command: &str) -> Result<(), Failure> {
+    match job.report {
+        true => Err(Failure::bad_input(format!(
+            "found --report, expected none: {command} writes no page"
+        ))),
+        false => Ok(()),
+    }
+}
+
 /// Refines the steps of a problem to the accuracy of the job.
 fn refine(job: &Job, problem: Problem) -> Result<Problem, Failure> {
     let Some(asked) = job.accuracy else {

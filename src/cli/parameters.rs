@@ -5,7 +5,8 @@ use super::progress::Counter;
 use super::range::Range;
 use super::starts::spread;
 use super::{
-    DONE, Failure, INTERRUPTED, NOT_REACHED, interrupt, overrides, print, read_with, shown, tell,
+    DONE, Failure, INTERRUPTED, NOT_REACHED, interrupt, no_page, overrides, print, read_with,
+    shown, tell,
 };
 use crate::driver::{self, Optimisation};
 use crate::problem::{Override, Problem};
@@ -131,6 +132,7 @@ fn write(found: &Sweep, directory: &Path) -> Result<(), Failure> {
 /// interrupted sweep leaves them and the next one continues.
 pub(super) fn sweep(job: &Job, base: &Problem, range: &Range, starts: u32) -> Result<u8, Failure> {
     not_designed(base, "--sweep", &range.path)?;
+    no_page(job, "--sweep")?;
     if job.accuracy.is_some() {
         return Err(Failure::bad_input(
             "found --accuracy with --sweep, expected one of them: the steps of a sweep stay equal",

@@ -6,9 +6,9 @@ use crate::integrate::limits::View;
 use crate::report::History;
 use indicatif::{ProgressBar, ProgressStyle};
 use std::io::IsTerminal;
-use std::sync::atomic::{AtomicBool, Ordering};
+use std::sync::atomic::{AtomicBool, AtomicUsize, Ordering};
 use std::sync::{Arc, OnceLock};
-use std::time::Duration;
+use std::time::{Duration, Instant};
 
 /// Wall time before the first line on a simulation, and longest time between two lines [s].
 const LONG: f64 = 2.0;
@@ -49,27 +49,56 @@ pub(super) fn hide_bar() {
     bar().set_draw_target(indicatif::ProgressDrawTarget::hidden());
 }
 
+/// Remaining time from the time so far, if a part of the work is done.
+fn left(seconds: f64, part: f64) -> String {
+    match part > 0.0 {
+        true => format!("{:.0} s left", seconds * (1.0 - part) / part),
+        false => String::new(),
+    }
+}
+
 /// Counts the `total` parts of a long command on the bar: done, rate, remaining time. Without a terminal it does
 /// nothing.
-pub(crate) struct Counter;
+pub(crate) struct Counter {
+    what: &'static str,
+    total: usize,
+    done: AtomicUsize,
+    since: Instant,
+}
 
 impl Counter {
     /// Begins to count.
-    pub(crate) fn new(what: &str, total: usize) -> Self {
+    pub(crate) fn new(what: &'static str, total: usize) -> Self {
+        let own = Self {
+            what,
+            total,
+            done: AtomicUsize::new(0),
+            since: Instant::now(),
+        };
         if std::io::stderr().is_terminal() {
             COUNTS.store(true, Ordering::Relaxed);
-            let parts = "[{bar:30}] {pos} of {len} ";
-            show_bar(
-                total as u64,
-                &format!("{parts}{what}, {{per_sec}}, {{eta}} left {{msg}}"),
-            );
+            show_bar(total as u64, "[{bar:30}] {msg}");
+            own.tell(0);
         }
-        Self
+        own
     }
 
     /// One part is done.
     pub(crate) fn one(&self) {
-        bar().inc(1);
+        let done = self.done.fetch_add(1, Ordering::Relaxed) + 1;
+        self.tell(done);
+    }
+
+    fn tell(&self, done: usize) {
+        let seconds = self.since.elapsed().as_secs_f64();
+        let mut text = format!("{done} of {} {}", self.total, self.what);
+        if done > 0 {
+            let rate = 60.0 * done as f64 / seconds.max(1e-3);
+            let left = left(seconds, done as f64 / self.total.max(1) as f64);
+            text += &format!(", {rate:.0} a minute, {left}");
+        }
+        bar().set_message(text);
+        bar().set_position(done as u64);
     }
 }
 
@@ -102,16 +131,18 @@ fn draw_bars(seen: &Progress) {
         let long = seen.longest().filter(|view| view.seconds >= LONG);
         let counts = COUNTS.load(Ordering::Relaxed);
         match long {
-            Some(view) if counts => bar().set_message(format!("({})", line(&view))),
+            // The bar counts parts of the command.
+            _ if counts => {}
             Some(view) => {
                 if !drawn {
-                    show_bar(PARTS as u64, "[{bar:30}] {percent} %, {eta} left: {msg}");
+                    show_bar(PARTS as u64, "[{bar:30}] {percent} % {msg}");
                 }
                 drawn = true;
-                bar().set_position((PARTS * view.time / view.duration) as u64);
-                bar().set_message(line(&view));
+                let part = view.time / view.duration;
+                let left = left(view.seconds, part);
+                bar().set_message(format!("{} steps, {left}", view.steps));
+                bar().set_position((PARTS * part) as u64);
             }
-            None if counts => bar().set_message(""),
             None if drawn => {
                 drawn = false;
                 hide_bar();

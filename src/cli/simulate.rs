@@ -5,7 +5,7 @@ use super::arguments::Job;
 use super::earlier::start_from;
 use super::error_table::{self, table};
 use super::{
-    DONE, Failure, NOT_REACHED, draw, load, print, read, refine, shown, tell, write_report,
+    DONE, Failure, NOT_REACHED, draw, load, no_page, print, read, refine, shown, tell, write_report,
 };
 use crate::driver::ends::Ends;
 use crate::driver::tables::ReactionAxes;
@@ -338,6 +338,7 @@ pub(crate) fn check(job: &Job, from: Option<&Path>, tolerance: f64) -> Result<u8
         let what = "found --output, expected none: optimize check writes no files";
         return Err(Failure::bad_input(what));
     }
+    no_page(job, "optimize check")?;
     let mut problem = load(job)?;
     if let Some(from) = from {
         start_from(&mut problem, from)?;

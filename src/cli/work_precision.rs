@@ -1,7 +1,7 @@
 //! `optimize work-precision`.
 
 use super::arguments::{Job, Measurement};
-use super::{DONE, Failure, draw, print, read, refine, shown, tell};
+use super::{DONE, Failure, draw, no_page, print, read, refine, shown, tell};
 use crate::driver::work_precision::{Campaign, work_precision};
 use crate::problem::Problem;
 use crate::report::positions::positions_from_csv;
@@ -15,6 +15,7 @@ pub(crate) fn measure(asked: &Measurement) -> Result<u8, Failure> {
         let what = "found --error, expected none: optimize work-precision measures errors itself";
         return Err(Failure::bad_input(what));
     }
+    no_page(job, "optimize work-precision")?;
     let problem = read(job)?;
     if problem.statics.is_some() {
         return super::statics::measure(job, &problem, asked.function.as_deref(), asked.runs);

@@ -49,10 +49,10 @@ pub(super) fn many_steps(
     if model.flexible.is_empty() || steps < MANY_STEPS {
         return None;
     }
-    let looser = 100.0 * tolerance;
+    let looser = format!("{:.0e}", 100.0 * tolerance);
     Some(format!(
         "{steps} steps follow the vibrations of elastic bodies to the tolerance {tolerance:e}. If slow motion is wanted, a \
-         looser tolerance takes fewer; see what changes with --set /simulation/tolerance={looser:e} --error"
+         looser tolerance takes fewer; see what changes with --set /simulation/tolerance={looser} --error"
     ))
 }
 

@@ -14,7 +14,9 @@ pub fn arrows(simulation: &Simulation, frames: &[usize]) -> (Vec<Arrow>, bool) {
     let (model, run) = (&simulation.written.model, simulation.motion());
     let is_force = |kind: &LoadKind<f64>| matches!(kind, LoadKind::Force { .. });
     let forces = || model.loads.iter().filter(|load| is_force(&load.kind));
-    if model.joints.len() + forces().count() > MOST {
+    // The attachments of flexible bodies are no joints of the file.
+    let joints = || (model.joints.iter().enumerate()).filter(|(_, joint)| joint.modes.is_none());
+    if joints().count() + forces().count() > MOST {
         return (Vec::new(), true);
     }
     let at = |k: usize| Snapshot::of(model, run, k);
@@ -58,8 +60,7 @@ pub fn arrows(simulation: &Simulation, frames: &[usize]) -> (Vec<Arrow>, bool) {
             forces: frames.iter().map(each).collect(),
         })
     };
-    let joints = model.joints.iter().enumerate().map(of_joint);
-    let mut all: Vec<Arrow> = joints.collect();
+    let mut all: Vec<Arrow> = joints().map(of_joint).collect();
     all.extend(forces().filter_map(of_load));
     (all, false)
 }

@@ -63,11 +63,10 @@ pub fn page(
         .collect();
     let mut notes = Vec::new();
     let mut stages = of_structures::stages(problem, &ends.structures);
-    for own in &motions {
-        let (still, moving) = stage(own, &mut notes);
-        stages.extend(still);
-        stages.push(moving);
-    }
+    let shown = motions.iter().map(|own| stage(own, &mut notes));
+    let (still, moving): (Vec<Option<Stage>>, Vec<Stage>) = shown.unzip();
+    stages.extend(moving);
+    stages.extend(still.into_iter().flatten());
     share_scales(&mut stages);
     let mut charts = of_run.map_or_else(Vec::new, |(_, history)| convergence(history));
     charts.extend(curves(problem, &motions));

@@ -7,7 +7,7 @@ use crate::functions::snapshot::Snapshot;
 use crate::math::Vec3;
 use crate::model::finite::ElementMesh;
 use crate::problem::{Drawing, Outline, larger};
-use crate::report::page::{Shape, rounded};
+use crate::report::page::{Shape, place, rounded};
 use std::collections::BTreeMap;
 
 /// Numbers of a rigid body at an instant.
@@ -140,7 +140,7 @@ pub(super) fn shape(
                 let motion = at.motion(body);
                 let moved = points.iter();
                 let moved = moved.map(|(point, modes)| motion.point(&displaced(point, modes, &q)));
-                moved.flat_map(|p| [p.x, p.y, p.z].map(rounded)).collect()
+                moved.flat_map(|p| [p.x, p.y, p.z].map(place)).collect()
             };
             let values = |k: &usize| match fibres {
                 Some(beam) => {
@@ -186,7 +186,7 @@ fn of_shells(
         let (motion, q) = unknowns(k);
         let all = shells::places(mesh, &q);
         let moved = nodes.iter().map(|&node| motion.point(&all[node]));
-        moved.flat_map(|p| [p.x, p.y, p.z].map(rounded)).collect()
+        moved.flat_map(|p| [p.x, p.y, p.z].map(place)).collect()
     };
     let known = has_stress(model, body, drawing);
     let mean = |values: &[f64]| rounded(values.iter().sum::<f64>() / values.len() as f64);

@@ -24,11 +24,11 @@ const STEPS: [f64; 3] = [1e-4, 1e-5, 1e-6];
 /// objective and of each row, the objective first. Of three steps the one counts that agrees best.
 ///
 /// ```
-/// use flexbody::optimiser::{Functions, derivative_errors};
+/// use flexbody_optimiser::{Functions, derivative_errors};
 /// let mut wrong = Functions::new(&[1.0], |x| (x[0].powi(2), vec![3.0 * x[0]]));
 /// let found = derivative_errors(&mut wrong, &[2.0])?;
 /// assert_eq!((found[0].given, found[0].difference.round()), (6.0, 4.0));
-/// # Ok::<(), flexbody::optimiser::EvaluationFailure>(())
+/// # Ok::<(), flexbody_optimiser::EvaluationFailure>(())
 /// ```
 ///
 /// # Errors

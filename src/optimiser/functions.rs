@@ -9,7 +9,7 @@ type Rows<'f> = Box<dyn FnMut(&[f64]) -> (Vec<f64>, Jacobian) + 'f>;
 /// A program given by closures that return values and derivatives together.
 ///
 /// ```
-/// use flexbody::optimiser::{Functions, Jacobian, Options, Silent, solve};
+/// use flexbody_optimiser::{Functions, Jacobian, Options, Silent, solve};
 ///
 /// // Minimise (x − 2)² + y² in the unit disc.
 /// let mut disc = Functions::new(&[0.0, 0.5], |x| {

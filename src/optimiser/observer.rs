@@ -60,7 +60,7 @@ pub trait Observer {
 /// An observer that ignores all rows.
 ///
 /// ```
-/// use flexbody::optimiser::{Observer, Phase, Row, Silent};
+/// use flexbody_optimiser::{Observer, Phase, Row, Silent};
 /// let x = [1.0];
 /// let row = Row {
 ///     iteration: 0, objective: 2.0, infeasibility: 0.0, optimality: 1.0, barrier: 0.1,
@@ -82,7 +82,7 @@ impl Observer for Silent {
 /// barrier parameter, length and part of the step, evaluations.
 ///
 /// ```
-/// use flexbody::optimiser::{Functions, Options, Printed, solve};
+/// use flexbody_optimiser::{Functions, Options, Printed, solve};
 /// let mut parabola = Functions::new(&[3.0], |x| (x[0] * x[0], vec![2.0 * x[0]]));
 /// let mut lines = Vec::new();
 /// let outcome = solve(&mut parabola, &Options::default(), &mut Printed(&mut lines));

@@ -29,7 +29,7 @@ const FIRST_EVALUATIONS: f64 = 0.35;
 /// Minimises f(x) subject to c_L ≤ c(x) ≤ c_U and x_L ≤ x ≤ x_U.
 ///
 /// ```
-/// use flexbody::optimiser::{
+/// use flexbody_optimiser::{
 ///     Evaluation, EvaluationFailure, Gradients, Jacobian, Nlp, Options, Silent, solve,
 /// };
 ///

@@ -150,7 +150,7 @@ pub struct Simulation {
 /// A problem: a scene that depends on a design, its functions, and the settings of the solution.
 ///
 /// ```
-/// use flexbody::Problem;
+/// use flexbody_problem::Problem;
 ///
 /// let text = r#"{
 ///   "version": 1, "name": "ball",
@@ -160,7 +160,7 @@ pub struct Simulation {
 /// }"#;
 /// let problem = Problem::parse(text, "ball.json", &[])?;
 /// assert_eq!(problem.start(), [0.5]);
-/// # Ok::<(), flexbody::Faults>(())
+/// # Ok::<(), flexbody_problem::Faults>(())
 /// ```
 #[derive(Clone, Debug)]
 pub struct Problem {

@@ -8,7 +8,7 @@ use nalgebra::{DMatrix, DVector};
 /// other entries are zero.
 ///
 /// ```
-/// use flexbody::optimiser::Jacobian;
+/// use flexbody_optimiser::Jacobian;
 /// let dense = Jacobian::dense(2, 3, vec![1.0, 0.0, 2.0, 0.0, 3.0, 0.0]);
 /// let sparse = Jacobian::sparse(2, 3, [(0, 0, 1.0), (0, 2, 2.0), (1, 1, 3.0)]);
 /// assert_eq!(dense[(0, 2)], sparse[(0, 2)]);

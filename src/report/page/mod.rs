@@ -115,6 +115,19 @@ pub fn rounded(x: f64) -> f64 {
     }
 }
 
+/// A place \[m\] to five digits, and zero where only round-off is left.
+pub fn place(x: f64) -> f64 {
+    if x.abs() < 1e-13 {
+        return 0.0;
+    }
+    let digits = 4 - x.abs().log10().floor() as i32;
+    let scale = 10f64.powi(digits.clamp(-300, 300).abs());
+    match digits >= 0 {
+        true => (x * scale).round() / scale,
+        false => (x / scale).round() * scale,
+    }
+}
+
 /// The curves of the convergence of an optimisation.
 pub fn convergence(history: &History) -> Vec<Chart> {
     let label = |name: &str, unit: &Option<String>| match unit.as_deref() {

@@ -76,14 +76,14 @@ class Scene {
     if (square && stage.ground !== null) { const y = flat(stage.view[1].map(x => x * stage.ground))[1]; g.strokeStyle = "#8c6d31"; g.lineWidth = 1.5; line([[0, y], [width, y]]); g.stroke(); }
     if (square && stage.barrier) { const at = h => flat(stage.view[0].map((x, i) => x * stage.barrier[0] + stage.view[1][i] * h)); g.strokeStyle = ink("--ink"); g.lineWidth = 3; line([at(stage.ground ?? 0), at(stage.barrier[1])]); g.stroke(); }
     g.strokeStyle = ink("--faint"); g.lineWidth = 1; for (const path of stage.paths) { line(path.map(flat)); g.stroke(); }
-    let [k0, k1, f] = between(stage.times, t); if (stage.swings) { k0 = 0; k1 = 1; f = Math.sin(2 * Math.PI * t); }
+    let [k0, k1, f] = between(stage.times, t); if (stage.swings) { k0 = 0; k1 = 1; f = Math.cos(2 * Math.PI * t); }
     const parts = [];
     stage.bodies.forEach((body, index) => {
       const shape = body.shape, points = this.point(shape, k0, k1, f), colour = COLOURS[index % COLOURS.length];
       const depth = list => list.reduce((s, p) => s + dot(towards, p), 0) / list.length;
       const outline = (list, fill, alpha, edge) => () => {
         if (list.length > 2) { line(list); g.closePath(); g.globalAlpha = alpha; g.fillStyle = fill; g.fill(); g.globalAlpha = 1; } else line(list);
-        g.strokeStyle = list.length > 2 ? edge : fill; g.lineWidth = list.length > 2 ? 0.7 : 3; g.stroke();
+        const thin = list.length > 2 && thickness(list) < 2; g.strokeStyle = list.length > 2 && !thin ? edge : fill; g.lineWidth = thin || list.length === 2 ? 3 : 0.7; g.stroke();
       };
       if (shape.kind === "mesh") {
         const values = stage.range && shape.values.length && shape.values[k0].length ? mix(shape.values[k0], shape.values[k1], stage.swings ? Math.abs(f) : f) : null;
@@ -116,7 +116,7 @@ class Scene {
         const e = mix(arrow.forces[k0], arrow.forces[k1], f), size = Math.hypot(...e.slice(3)); if (size < 1e-9 * this.most) continue;
         const a = flat(e.slice(0, 3)), b = [dot(camera.right, e.slice(3)), -dot(camera.up, e.slice(3))].map((x, i) => a[i] + 90 * x / Math.sqrt(size * this.most));
         const d = [b[0] - a[0], b[1] - a[1]], l = Math.hypot(...d); g.strokeStyle = g.fillStyle = arrow.applied ? "#d7191c" : "#2c7bb6"; g.lineWidth = 2; line([a, b]); g.stroke();
-        if (l > 3) { const [u, v] = [d[0] / l, d[1] / l]; line([b, [b[0] - 7 * u + 3 * v, b[1] - 7 * v - 3 * u], [b[0] - 7 * u - 3 * v, b[1] - 7 * v + 3 * u]]); g.closePath(); g.fill(); g.fillText(size.toPrecision(4) + " N", b[0] + 4, b[1]); }
+        if (l > 3) { const [u, v] = [d[0] / l, d[1] / l]; line([b, [b[0] - 7 * u + 3 * v, b[1] - 7 * v - 3 * u], [b[0] - 7 * u - 3 * v, b[1] - 7 * v + 3 * u]]); g.closePath(); g.fill(); const text = size.toPrecision(4) + " N"; g.lineWidth = 3; g.strokeStyle = ink("--panel"); g.strokeText(text, b[0] + 4, b[1]); g.fillText(text, b[0] + 4, b[1]); }
       }
     }
     if (stage.range) {
@@ -127,6 +127,11 @@ class Scene {
     this.caption.textContent = (stage.title || "motion") + (stage.label ? ` (${stage.label})` : "");
     this.scale = scale;
   }
+}
+// Area of a face of the picture by its length: a face that is thinner than a line is drawn as one.
+function thickness(list) {
+  let area = 0, length = 0; list.forEach((p, i) => { const q = list[(i + 1) % list.length]; area += p[0] * q[1] - p[1] * q[0]; length = Math.max(length, Math.hypot(q[0] - p[0], q[1] - p[1])); });
+  return Math.abs(area) / 2 / (length || 1);
 }
 // Convex hull of points of the picture (Andrew's monotone chain).
 function hull(points) {

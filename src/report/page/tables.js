@@ -24,8 +24,10 @@ function optimumTables(o) {
   if (constraints.length) {
     const words = (name, c) => {
       if (c.active === "inactive" || !c.multiplier) return "";
-      const better = (c.multiplier > 0) === (o.objective.sense === "maximise"), of = c.unit && c.unit !== "1" ? `1 ${c.unit}` : "1";
-      return `raising the limit by ${of} ${c.multiplier > 0 ? "raises" : "lowers"} ${o.objective.function} by ${withUnit(Math.abs(c.multiplier), unit)}: ${better ? "a gain" : "a loss"} (to first order)`;
+      // A step of about one per cent of the limit, so that the first order holds.
+      const better = (c.multiplier > 0) === (o.objective.sense === "maximise"), limit = c.active.includes("upper") ? c.upper : c.lower;
+      const step = limit ? Number(`1e${Math.round(Math.log10(Math.abs(limit) / 100))}`) : 1, both = c.lower !== undefined && c.upper !== undefined && c.lower !== c.upper;
+      return `raising the ${both ? (limit === c.upper ? "upper " : "lower ") : ""}limit by ${withUnit(step, c.unit)} ${c.multiplier > 0 ? "raises" : "lowers"} ${o.objective.function} by ${withUnit(step * Math.abs(c.multiplier), unit)}: ${better ? "a gain" : "a loss"} (to first order)`;
     };
     const margin = c => [c.lower === undefined ? Infinity : c.value - c.lower, c.upper === undefined ? Infinity : c.upper - c.value].reduce((a, b) => Math.min(a, b));
     const where = c => c.aggregate ? [c.aggregate.place, c.aggregate.time === undefined ? "" : `t = ${number(c.aggregate.time)} s`].filter(x => x).join(", ") + `, true extreme ${number(c.aggregate.true_maximum)}` : "";
