@@ -116,7 +116,8 @@ class Scene {
         const e = mix(arrow.forces[k0], arrow.forces[k1], f), size = Math.hypot(...e.slice(3)); if (size < 1e-9 * this.most) continue;
         const a = flat(e.slice(0, 3)), b = [dot(camera.right, e.slice(3)), -dot(camera.up, e.slice(3))].map((x, i) => a[i] + 90 * x / Math.sqrt(size * this.most));
         const d = [b[0] - a[0], b[1] - a[1]], l = Math.hypot(...d); g.strokeStyle = g.fillStyle = arrow.applied ? "#d7191c" : "#2c7bb6"; g.lineWidth = 2; line([a, b]); g.stroke();
-        if (l > 3) { const [u, v] = [d[0] / l, d[1] / l]; line([b, [b[0] - 7 * u + 3 * v, b[1] - 7 * v - 3 * u], [b[0] - 7 * u - 3 * v, b[1] - 7 * v + 3 * u]]); g.closePath(); g.fill(); const text = size.toPrecision(4) + " N"; g.lineWidth = 3; g.strokeStyle = ink("--panel"); g.strokeText(text, b[0] + 4, b[1]); g.fillText(text, b[0] + 4, b[1]); }
+        if (l > 3) { const [u, v] = [d[0] / l, d[1] / l]; line([b, [b[0] - 7 * u + 3 * v, b[1] - 7 * v - 3 * u], [b[0] - 7 * u - 3 * v, b[1] - 7 * v + 3 * u]]); g.closePath(); g.fill(); } else { g.beginPath(); g.arc(...a, 5, 0, 7); g.stroke(); }
+        const text = size.toPrecision(4) + " N"; g.lineWidth = 3; g.strokeStyle = ink("--panel"); g.strokeText(text, b[0] + 4, b[1]); g.fillText(text, b[0] + 4, b[1]);
       }
     }
     if (stage.range) {
