@@ -7,8 +7,8 @@ use super::parameters::{Parameter, add_sensitivities, parameter, sweep};
 use super::records::{Records, Start, refuse_without_run};
 use super::starts::{several, spread};
 use super::{
-    DONE, Failure, INTERRUPTED, NOT_REACHED, NUMERICAL_FAILURE, draw, interrupt, print, read,
-    refine, shown, tell, write_report,
+    DONE, Failure, INTERRUPTED, NOT_REACHED, NUMERICAL_FAILURE, REPORT, draw, interrupt, print,
+    read, refine, shown, tell, write_report,
 };
 use crate::driver::ends::Ends;
 use crate::driver::{self, Optimisation, WarmStart, certificate, figures};
@@ -62,6 +62,12 @@ pub(crate) fn optimise(job: &Job, course: &RunOptions) -> Result<u8, Failure> {
     let _held = prepare_directory(&directory)?;
     let (problem, state, starts) = begin(refine(job, problem)?)?;
     let records = Records::new(&directory, resume)?;
+    if course.watch && !job.quiet {
+        tell(&format!(
+            "open {} in a browser to watch the run\n",
+            shown(&directory.join(REPORT))
+        ));
+    }
     interrupt::heed();
     let stopped = interrupt::asked;
     let file = job
@@ -166,6 +172,9 @@ pub(crate) fn optimise(job: &Job, course: &RunOptions) -> Result<u8, Failure> {
     }
     if !job.quiet {
         tell(&format!("results in {}\n", shown(&directory)));
+        if recorded && (job.report || course.watch) {
+            tell(&format!("page: {}\n", shown(&directory.join(REPORT))));
+        }
     }
     checked?;
     if let (true, Some(end)) = (job.error, &done.end) {

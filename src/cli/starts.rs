@@ -33,9 +33,14 @@ pub(crate) fn several(
     let fault: Mutex<Option<ReportError>> = Mutex::new(None);
     let told = AtomicBool::new(quiet);
     let known = AtomicUsize::new(0);
-    let counter = (!quiet).then(|| Counter::new("starts begun", starts.len()));
+    // A start that begins when all processors had one follows one that has ended.
+    let processors = std::thread::available_parallelism().map_or(1, usize::from);
+    let begun = AtomicUsize::new(0);
+    let counter = (!quiet).then(|| Counter::new("starts done", starts.len()));
     let open = |k: usize, problem: &Problem| -> Option<KnownEvaluations<'_>> {
-        if let Some(counter) = &counter {
+        if begun.fetch_add(1, Ordering::Relaxed) >= processors
+            && let Some(counter) = &counter
+        {
             counter.one();
         }
         match records.open(Start::OneOf(k), problem) {

@@ -31,7 +31,7 @@ class LineChart {
     const X = x => left + (x - x0) / (x1 - x0) * (right - left), Y = y => bottom - (y - y0) / (y1 - y0) * (bottom - top);
     g.lineWidth = 1; g.fillStyle = ink("--faint"); g.strokeStyle = ink("--line"); g.textAlign = "right"; g.textBaseline = "middle";
     for (const y of marks) { g.beginPath(); g.moveTo(left, Y(y)); g.lineTo(right, Y(y)); g.stroke(); g.fillText(name(y), left - 5, Y(y)); }
-    g.textAlign = "center"; g.textBaseline = "top"; for (const x of ticks(x0, x1, Math.max(2, width / 90))) { g.beginPath(); g.moveTo(X(x), bottom); g.lineTo(X(x), bottom + 4); g.stroke(); g.fillText(number(+x.toPrecision(12)), X(x), bottom + 6); }
+    g.textAlign = "center"; g.textBaseline = "top"; for (const x of ticks(x0, x1, Math.max(2, width / 90)).filter(x => chart.across !== "iteration" || Number.isInteger(x))) { g.beginPath(); g.moveTo(X(x), bottom); g.lineTo(X(x), bottom + 4); g.stroke(); g.fillText(number(+x.toPrecision(12)), X(x), bottom + 6); }
     g.fillText(chart.across, (left + right) / 2, height - 12); g.save(); g.translate(9, (top + bottom) / 2); g.rotate(-Math.PI / 2); g.fillText(chart.up, 0, -7); g.restore();
     g.setLineDash([5, 4]); g.strokeStyle = ink("--bad"); for (const [label, value] of chart.limits) { const y = Y(up(value)); g.beginPath(); g.moveTo(left, y); g.lineTo(right, y); g.stroke(); g.textAlign = "right"; g.textBaseline = "bottom"; g.fillText(label, right, y - 1); } g.setLineDash([]);
     chart.curves.forEach((c, i) => { g.strokeStyle = COLOURS[i % COLOURS.length]; g.lineWidth = 1.6; g.beginPath(); c.points.forEach((p, k) => k ? g.lineTo(X(p[0]), Y(up(p[1]))) : g.moveTo(X(p[0]), Y(up(p[1])))); g.stroke(); });

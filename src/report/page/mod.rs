@@ -4,6 +4,7 @@ mod stage;
 
 pub use stage::{Arrow, Body, Link, Shape, Stage};
 
+use super::history::Column;
 use super::{History, HistoryRow, Optimum};
 use serde::Serialize;
 
@@ -170,18 +171,27 @@ pub fn convergence(history: &History) -> Vec<Chart> {
         ),
     ];
     const MOST_CURVES: usize = 12;
-    let each = history.constraints.iter().enumerate().take(MOST_CURVES);
-    let curves: Vec<Curve> = each
-        .map(|(k, column)| {
-            let name = label(&column.name, &column.unit);
-            Curve::new(
-                name,
-                along(&|row| row.constraints.get(k).copied().unwrap_or(f64::NAN)),
-            )
-        })
-        .collect();
-    if !curves.is_empty() {
-        all.push(chart("Constraints", String::new(), false, curves));
+    // Constraints of one unit share an axis.
+    let columns = || history.constraints.iter().enumerate().take(MOST_CURVES);
+    let mut units: Vec<&str> = Vec::new();
+    for (_, column) in columns() {
+        let unit = column.unit.as_deref().unwrap_or("");
+        if !units.contains(&unit) {
+            units.push(unit);
+        }
+    }
+    for unit in units {
+        let own = columns().filter(|(_, column)| column.unit.as_deref().unwrap_or("") == unit);
+        let curve = |(k, column): (usize, &Column)| {
+            let value = |row: &HistoryRow| row.constraints.get(k).copied().unwrap_or(f64::NAN);
+            Curve::new(&column.name, along(&value))
+        };
+        let up = if matches!(unit, "" | "1") {
+            String::new()
+        } else {
+            format!("[{unit}]")
+        };
+        all.push(chart("Constraints", up, false, own.map(curve).collect()));
     }
     let start = |k: usize| rows.first().and_then(|row| row.design.get(k)).copied();
     let each = history.variables.iter().enumerate().take(MOST_CURVES);
@@ -193,12 +203,7 @@ pub fn convergence(history: &History) -> Vec<Chart> {
         })
         .collect();
     if !curves.is_empty() {
-        all.push(chart(
-            "Variables",
-            "value / start (value, where the start is 0)".into(),
-            false,
-            curves,
-        ));
+        all.push(chart("Variables", "value / start".into(), false, curves));
     }
     all
 }

@@ -73,7 +73,10 @@ for (const s of scenes) {
 }
 main.append(...tables);
 if (charts.length) { main.append(element("h2", "Curves")); const row = element("div", undefined, "row"); row.append(...charts.map(c => c.figure)); main.append(row); }
-if (data.optimum) main.append(element("h2", "Record"), recordTables(data.optimum));
+if (data.optimum) {
+  const file = element("details"); file.append(element("summary", "The problem as it was solved, with everything that was set on the command line"), element("pre", JSON.stringify(data.optimum.problem.document, null, 1)));
+  main.append(element("h2", "Record"), recordTables(data.optimum), file);
+}
 if (data.summary) { const pre = element("pre", data.summary); main.append(element("h2", "As the terminal shows it"), pre); }
 main.append(element("p", `flexbody ${data.version}`, "faint"));
 // `#t=0.4` shows an instant [s].

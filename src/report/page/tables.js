@@ -40,7 +40,7 @@ function optimumTables(o) {
 }
 function recordTables(o) {
   const k = o.kkt.scaled, c = o.gradient_certificate, rows = [["stationarity: how far the gradient is from being balanced by multipliers", number(k.stationarity)], ["feasibility: how far a constraint is violated", number(k.feasibility)], ["complementarity: multipliers of constraints that are not active", number(k.complementarity)],
-    ["certificate: gradients beside the complex step", c === undefined ? "not made" : c.passed ? "they agree" : "they differ"], ...Object.entries(o.counts).map(([name, n]) => [name.replaceAll("_", " "), String(n)]), ...(o.integration ? [["method", `${o.integration.method}, ${o.integration.steps} steps (${o.integration.reason})`]] : []),
+    ["certificate: gradients beside the complex step", c === undefined ? "not made" : c.passed ? "they agree" : "they differ"], ...Object.entries(o.counts).filter(([, n]) => n).map(([name, n]) => [name.replaceAll("_", " "), String(n)]), ...(o.integration ? [["method", `${o.integration.method}, ${o.integration.steps} steps (${o.integration.reason})`]] : []),
     ["problem file", `${o.problem.file}${o.problem.sha256 ? ", SHA-256 " + o.problem.sha256 : ""}`], ["version", o.version]];
   return table([["accuracy, work and origin"], [""]], rows.map(([a, b]) => [[a, "wide"], [b, "wide"]]));
 }
