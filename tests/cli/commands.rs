@@ -612,7 +612,8 @@ fn the_documents_name_commands_and_options_that_exist() {
     }
     // Options of cargo, git and the linter.
     known += "--release --all-targets --no-deps --bench --test --lib --check --stat --locked --open \
-              --path --tool --threshold --auto --call-graph --nocapture --include-ignored --ignored --all";
+              --path --tool --threshold --auto --call-graph --nocapture --include-ignored --ignored --all --timings \
+              --no-run";
     let options: Vec<&str> = known
         .split(|c: char| !(c.is_ascii_lowercase() || c == '-'))
         .collect();
