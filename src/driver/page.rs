@@ -61,7 +61,7 @@ pub fn page(
     let motions: Vec<Shown> = (ends.motions.iter())
         .map(|(title, simulation)| Shown::new(problem, title, simulation))
         .collect();
-    let mut notes: Vec<String> = problem.notes_of_input().into_iter().collect();
+    let mut notes = problem.notes_of_input();
     let mut stages = of_structures::stages(problem, &ends.structures);
     let shown = motions.iter().map(|own| stage(own, &mut notes));
     let (still, moving): (Vec<Option<Stage>>, Vec<Stage>) = shown.unzip();

@@ -51,14 +51,18 @@ impl Detail {
         (0..some).map(|i| i * last / gaps).collect()
     }
 
-    /// The faces of shells by their nodes: four of each, or one.
+    /// The corners of the faces of a shell, four or one, among its nodes.
+    fn corners(&self) -> &'static [[usize; 4]] {
+        match self.is_thinned() {
+            true => &[[0, 2, 8, 6]],
+            false => &QUARTERS,
+        }
+    }
+
+    /// The faces of shells by their nodes.
     fn faces(&self, mesh: &ElementMesh) -> Vec<Vec<usize>> {
-        let corners: Vec<[usize; 4]> = match self.is_thinned() {
-            true => vec![[0, 2, 8, 6]],
-            false => QUARTERS.to_vec(),
-        };
         let of_element = |nodes: &[usize; 9]| -> Vec<Vec<usize>> {
-            let each = corners.iter();
+            let each = self.corners().iter();
             each.map(|own| own.map(|local| nodes[local]).to_vec())
                 .collect()
         };
@@ -165,6 +169,31 @@ pub(super) fn shape(
     }
 }
 
+/// The faces of shells and the halves of beams, by the nodes that are shown, and where these are in the frames.
+fn moving_faces(
+    simulation: &Simulation,
+    body: usize,
+    mesh: &ElementMesh,
+    (frames, detail): (&[usize], &Detail),
+) -> (Vec<Vec<usize>>, Vec<Vec<f64>>) {
+    let (model, run) = (&simulation.written.model, simulation.motion());
+    let nodes = detail.nodes(mesh);
+    let number: BTreeMap<usize, usize> = nodes.iter().enumerate().map(|(k, &n)| (n, k)).collect();
+    let faces = detail.faces(mesh).into_iter();
+    let numbered = |face: Vec<usize>| face.iter().map(|node| number[node]).collect();
+    let places = |k: &usize| {
+        let at = Snapshot::of(model, run, *k);
+        let q = shells::unknowns(model, body, elastic(model, &at, body));
+        let (motion, all) = (at.motion(body), shells::places(mesh, &q));
+        let moved = nodes.iter().map(|&node| motion.point(&all[node]));
+        moved.flat_map(|p| [p.x, p.y, p.z].map(place)).collect()
+    };
+    (
+        faces.map(numbered).collect(),
+        frames.iter().map(places).collect(),
+    )
+}
+
 /// Shells, and beams by their halves.
 fn of_shells(
     (simulation, drawing): (&Simulation, &Drawing),
@@ -173,28 +202,15 @@ fn of_shells(
     (frames, detail): (&[usize], &Detail),
 ) -> Shape {
     let (model, run) = (&simulation.written.model, simulation.motion());
-    let nodes = detail.nodes(mesh);
-    let number: BTreeMap<usize, usize> = nodes.iter().enumerate().map(|(k, &n)| (n, k)).collect();
-    let faces = detail.faces(mesh).into_iter();
-    let numbered = |face: Vec<usize>| face.iter().map(|node| number[node]).collect();
-    let unknowns = |k: &usize| {
-        let at = Snapshot::of(model, run, *k);
-        let q = shells::unknowns(model, body, elastic(model, &at, body));
-        (at.motion(body), q)
-    };
-    let places = |k: &usize| {
-        let (motion, q) = unknowns(k);
-        let all = shells::places(mesh, &q);
-        let moved = nodes.iter().map(|&node| motion.point(&all[node]));
-        moved.flat_map(|p| [p.x, p.y, p.z].map(place)).collect()
-    };
+    let (faces, places) = moving_faces(simulation, body, mesh, (frames, detail));
     let known = has_stress(model, body, drawing);
     let mean = |values: &[f64]| rounded(values.iter().sum::<f64>() / values.len() as f64);
     let values = |k: &usize| {
-        let (_, q) = unknowns(k);
         let Some(finite) = shells::of(model, body).filter(|_| known) else {
             return Vec::new();
         };
+        let at = Snapshot::of(model, run, *k);
+        let q = shells::unknowns(model, body, elastic(model, &at, body));
         let mut all = Vec::new();
         for stress in shells::stresses(finite, &q) {
             if detail.is_thinned() {
@@ -213,32 +229,25 @@ fn of_shells(
         all
     };
     Shape::Mesh {
-        faces: faces.map(numbered).collect(),
-        places: frames.iter().map(places).collect(),
+        faces,
+        places,
         values: frames.iter().map(values).collect(),
     }
 }
 
 /// The shells of a body at the first of the frames, in the values of their thickness \[mm\]; `None` without shells.
 pub(super) fn thickness(
-    shown: (&Simulation, &Drawing),
+    (simulation, drawing): (&Simulation, &Drawing),
     body: usize,
     frames: &[usize],
     detail: &Detail,
 ) -> Option<Shape> {
-    let Outline::Shells(line) = &shown.1.outlines[body] else {
+    let Outline::Shells(line) = &drawing.outlines[body] else {
         return None;
     };
     let first = &frames[..frames.len().min(1)];
-    let shape = of_shells(shown, body, &line.mesh, (first, detail));
-    let Shape::Mesh { faces, places, .. } = shape else {
-        return None;
-    };
-    let of_element = if detail.is_thinned() {
-        1
-    } else {
-        QUARTERS.len()
-    };
+    let (faces, places) = moving_faces(simulation, body, &line.mesh, (first, detail));
+    let of_element = detail.corners().len();
     let shells = of_element * line.thickness.len();
     let each = line
         .thickness

@@ -102,27 +102,27 @@ impl Curve {
 
 /// A number to six digits: pictures show no more.
 pub fn rounded(x: f64) -> f64 {
-    if x == 0.0 || !x.is_finite() {
-        return 0.0;
-    }
-    let digits = 5 - x.abs().log10().floor() as i32;
-    if !(-300..=300).contains(&digits) {
-        return x;
-    }
-    let scale = 10f64.powi(digits.abs());
-    match digits >= 0 {
-        true => (x * scale).round() / scale,
-        false => (x / scale).round() * scale,
-    }
+    to_digits(x, 6)
 }
 
 /// A place \[m\] to five digits, and zero where only round-off is left.
 pub fn place(x: f64) -> f64 {
-    if x.abs() < 1e-13 {
+    match x.abs() < 1e-13 {
+        true => 0.0,
+        false => to_digits(x, 5),
+    }
+}
+
+/// A number to so many digits; zero if it is not finite.
+fn to_digits(x: f64, count: i32) -> f64 {
+    if x == 0.0 || !x.is_finite() {
         return 0.0;
     }
-    let digits = 4 - x.abs().log10().floor() as i32;
-    let scale = 10f64.powi(digits.clamp(-300, 300).abs());
+    let digits = count - 1 - x.abs().log10().floor() as i32;
+    if !(-300..=300).contains(&digits) {
+        return x;
+    }
+    let scale = 10f64.powi(digits.abs());
     match digits >= 0 {
         true => (x * scale).round() / scale,
         false => (x / scale).round() * scale,
