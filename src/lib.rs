@@ -31,7 +31,7 @@
 //! ```
 //!
 //! A folder imports only from folders above its own in this list (`tests/files/layers.rs` checks
-//! it). `mathematics`, `mechanics`, `optimiser`, `document`, `problem`, `report` and `driver` are crates of their
+//! it). `mathematics`, `mechanics`, `optimiser`, `document`, `problem`, `report`, `driver` and `figures` are crates of their
 //! own, so that they compile beside each other and an edit compiles only what lies below it:
 //!
 //! | Folder | What lives there |
@@ -48,8 +48,9 @@
 //! | `optimiser` | nonlinear programs, without mechanics |
 //! | `document` | the document of a problem file: structures and schema |
 //! | `problem` | the problem file: faults, and the map from a design to a scene |
-//! | `report` | records, comparison, tables, figures, text |
+//! | `report` | records, comparison, text |
 //! | `driver` | simulate, check, optimise; estimate errors, measure methods |
+//! | `figures` | figures, the page of a result, fields and tables |
 //! | `library` | the public interface: simulate, differentiate, check and optimise a problem |
 //! | `cli` | the command line |
 
@@ -59,6 +60,7 @@ pub mod cli;
 mod library;
 
 use flexbody_driver as driver;
+use flexbody_figures as figures;
 use flexbody_mathematics::math;
 use flexbody_mechanics::{functions, integrate};
 use flexbody_problem as problem;

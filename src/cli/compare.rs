@@ -3,9 +3,9 @@
 use super::arguments::Comparison;
 use super::earlier::state_in;
 use super::{DONE, Failure, NOT_REACHED, REPORT, print, record, shown, tell};
-use crate::driver::figures;
-use crate::driver::page::page;
 use crate::driver::recorded::Recorded;
+use crate::figures;
+use crate::figures::report_page::page;
 use crate::report::{
     History, Optimum, Tolerances, prepare_directory, read_text, summary, write_all,
 };

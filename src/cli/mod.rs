@@ -21,9 +21,10 @@ mod starts;
 mod statics;
 mod work_precision;
 
+use crate::driver::accuracy;
 use crate::driver::ends::Ends;
-use crate::driver::page::page;
-use crate::driver::{accuracy, figures};
+use crate::figures;
+use crate::figures::report_page::page;
 use crate::problem::{Override, Problem, visible, visible_lines};
 use crate::report::{History, Optimum, ReportError, atomic_write, read_text};
 use arguments::{Arguments, Command, Job};
@@ -78,15 +79,14 @@ impl Failure {
 impl From<ReportError> for Failure {
     fn from(error: ReportError) -> Self {
         let code = match &error {
-            ReportError::Write { .. } | ReportError::Drawing(_) => NO_ACCESS,
+            ReportError::Write { .. } => NO_ACCESS,
             ReportError::Read { source, .. } => code_of_reading(source),
             ReportError::InUse { .. }
             | ReportError::History { .. }
             | ReportError::Evaluations { .. }
             | ReportError::Positions { .. }
             | ReportError::Optimum(_)
-            | ReportError::NotFinite { .. }
-            | ReportError::NothingToDraw { .. } => BAD_INPUT,
+            | ReportError::NotFinite { .. } => BAD_INPUT,
         };
         Self::new(code, error)
     }

@@ -3,8 +3,8 @@
 use super::progress::show;
 use super::records::{Records, Start, changed};
 use super::{Failure, REPORT, tell};
-use crate::driver::page::so_far;
 use crate::driver::{self, Optimisation, WarmStart};
+use crate::figures::report_page::so_far;
 use crate::problem::Problem;
 use crate::report::{History, HistoryLog, ReportError, atomic_write};
 use std::cell::RefCell;

@@ -11,7 +11,8 @@ use super::{
     read, refine, shown, tell, write_report,
 };
 use crate::driver::ends::Ends;
-use crate::driver::{self, Optimisation, WarmStart, certificate, figures};
+use crate::driver::{self, Optimisation, WarmStart, certificate};
+use crate::figures;
 use crate::optimiser::{Counts, Status};
 use crate::problem::Problem;
 use crate::report::optimum::Curvature;
@@ -159,11 +160,11 @@ pub(crate) fn optimise(job: &Job, course: &RunOptions) -> Result<u8, Failure> {
     }
     match (&done.end, recorded && job.vtu) {
         (Some(driver::Simulated::Statics(end)), true) => {
-            let fields = driver::statics::fields::fields(end).into_bytes();
+            let fields = figures::statics::fields::fields(end).into_bytes();
             write_all(&[(directory.join("fields.vtu"), fields)])?;
         }
         (Some(driver::Simulated::Motion(end)), true) => {
-            write_all(&driver::shell_fields::series(&directory, &problem, end))?;
+            write_all(&figures::shell_fields::series(&directory, &problem, end))?;
         }
         (_, false) | (None, true) => {}
     }

@@ -9,9 +9,10 @@ use super::{
     shown, tell,
 };
 use crate::driver::{self, Optimisation};
+use crate::figures::plots;
 use crate::problem::{Override, Problem};
 use crate::report::optimum::Sensitivity;
-use crate::report::{Sweep, plots, prepare_directory, write_all};
+use crate::report::{Sweep, prepare_directory, write_all};
 use serde_json::{Value, json};
 use std::path::Path;
 

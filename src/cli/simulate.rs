@@ -8,11 +8,10 @@ use super::{
     DONE, Failure, NOT_REACHED, draw, load, no_page, print, read, refine, shown, tell, write_report,
 };
 use crate::driver::ends::Ends;
-use crate::driver::tables::ReactionAxes;
 use crate::driver::unfollowed::unfollowed;
-use crate::driver::{
-    self, CheckedDerivative, Evaluated, Simulated, Simulation, error, figures, not_finite, tables,
-};
+use crate::driver::{self, CheckedDerivative, Evaluated, Simulated, Simulation, error, not_finite};
+use crate::figures::tables::ReactionAxes;
+use crate::figures::{self, tables};
 use crate::functions::evaluate::ungated_maximum;
 use crate::functions::peak::Maximum;
 use crate::integrate::IntegrationFailure;
@@ -74,7 +73,7 @@ pub(crate) fn simulate(
             .collect();
         write_all(&tables)?;
         if job.vtu {
-            write_all(&driver::shell_fields::series(
+            write_all(&figures::shell_fields::series(
                 directory,
                 &problem,
                 &simulation,

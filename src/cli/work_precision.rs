@@ -3,9 +3,10 @@
 use super::arguments::{Job, Measurement};
 use super::{DONE, Failure, draw, no_page, print, read, refine, shown, tell};
 use crate::driver::work_precision::{Campaign, work_precision};
+use crate::figures::plots;
 use crate::problem::Problem;
 use crate::report::positions::positions_from_csv;
-use crate::report::{PrecisionRow, plots, prepare_directory, read_text, write_all};
+use crate::report::{PrecisionRow, prepare_directory, read_text, write_all};
 use std::path::{Path, PathBuf};
 
 /// Measures all methods on the start of a problem and writes the results.

@@ -157,7 +157,7 @@ impl Solved {
             (&start, end.as_ref()),
         );
         if let Some(Simulated::Motion(end)) = &end {
-            let all: Vec<usize> = asked(problem).collect();
+            let all: Vec<usize> = requested(problem).collect();
             let chaotic = chaos::of_motion(problem, &end.at, &all);
             let ended = !matches!(self.outcome.status, Status::Interrupted | Status::TimeLimit);
             let unresolved = match (&chaotic, &start) {
@@ -198,7 +198,7 @@ impl Solved {
 }
 
 /// The functions of the objective and of the constraints.
-pub(super) fn asked(problem: &Problem) -> impl Iterator<Item = usize> {
+pub fn requested(problem: &Problem) -> impl Iterator<Item = usize> {
     let objective = problem.objective.map(|own| own.function);
     let constraints = problem.constraints.iter().map(|own| own.function);
     objective.into_iter().chain(constraints)

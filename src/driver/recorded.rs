@@ -3,7 +3,7 @@
 use super::analysed::Simulated;
 use super::ends::Ends;
 use super::integration::Integration;
-use super::optimise::asked;
+use super::optimise::requested;
 use super::warm_start::WarmStart;
 use crate::problem::Problem;
 use crate::report::Optimum;
@@ -63,8 +63,8 @@ impl Recorded {
         let mut problem = problem.for_optimisation().unwrap_or(problem);
         problem.restart(&first);
         let start = Simulated::of(&problem, &first).ok();
-        let asked: Vec<usize> = asked(&problem).collect();
-        let mut integration = Integration::of(&problem, Some(&asked), true);
+        let requested: Vec<usize> = requested(&problem).collect();
+        let mut integration = Integration::of(&problem, Some(&requested), true);
         let kept = state.filter(|state| state.fits(&problem));
         if let Some(kept) = kept.and_then(WarmStart::kept_steps) {
             integration.restore(kept);

@@ -80,15 +80,4 @@ pub enum ReportError {
         /// JSON Pointer of the number.
         pointer: String,
     },
-    /// A requested figure without the data that it shows.
-    #[error("figure {figure}: {missing}")]
-    NothingToDraw {
-        /// Name of the figure.
-        figure: &'static str,
-        /// What is missing.
-        missing: &'static str,
-    },
-    /// The drawing library failed.
-    #[error("figure: {0}")]
-    Drawing(#[from] plotters::drawing::DrawingAreaErrorKind<std::io::Error>),
 }

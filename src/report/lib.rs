@@ -1,7 +1,6 @@
-//! Results of a run: records, their comparison, figures and the final text.
+//! Results of a run: records, their comparison and the final text.
 //!
-//! All contents are pure functions of plain `f64` data, so the figures can be redrawn from the
-//! record. Only [`files`], [`evaluations`] and [`HistoryLog`] access the disk.
+//! All contents are pure functions of plain `f64` data. Only [`files`], [`evaluations`] and [`HistoryLog`] access the disk.
 //!
 //! | File | Content |
 //! |---|---|
@@ -18,9 +17,7 @@
 //! | [`positions`] | tables of reference positions |
 //! | [`work_precision`] | error against run time, `work_precision.csv` and `orders.csv` |
 //! | [`mesh_precision`] | error of structures against run time and mesh, `work_precision.csv` |
-//! | [`vtu`] | fields of structures, `fields.vtu` |
 //! | [`stability`] | the stability table, `stability.md` and `stability.csv` |
-//! | [`plots`] | figures as SVG |
 
 pub mod certificate;
 pub mod compare;
@@ -32,17 +29,14 @@ pub mod files;
 pub mod history;
 mod history_log;
 pub mod mesh_precision;
-mod number;
+pub mod number;
 pub mod optima;
 pub mod optimum;
-pub mod page;
-pub mod plots;
 pub mod positions;
 pub mod stability;
 pub mod summary;
 pub mod sweep;
 mod table;
-pub mod vtu;
 pub mod work_precision;
 
 use flexbody_mechanics::{integrate, system};

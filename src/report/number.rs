@@ -2,7 +2,7 @@
 
 /// `value` with at most `digits` significant digits and no trailing zeros: plain from 1e-3 to
 /// 1e6 in magnitude, otherwise `1.5e-7`.
-pub(super) fn significant(value: f64, digits: usize) -> String {
+pub fn significant(value: f64, digits: usize) -> String {
     if value == 0.0 {
         return "0".to_owned();
     }
@@ -30,7 +30,7 @@ fn trim_zeros(number: &str) -> &str {
 }
 
 /// A count with spaces between groups of three digits.
-pub(super) fn grouped(count: u64) -> String {
+pub fn grouped(count: u64) -> String {
     let digits = count.to_string();
     let mut out = String::new();
     for (i, digit) in digits.chars().enumerate() {

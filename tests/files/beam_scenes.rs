@@ -1,8 +1,8 @@
 //! Scenes with beams from files: torques at their points, starts of joints, pictures.
 
 use crate::reference::documents::{problem as parsed, run};
-use flexbody_driver::figures::of_simulation;
 use flexbody_driver::{check, simulate};
+use flexbody_figures::of_simulation;
 use serde_json::Value;
 
 /// A torque at the end of a cantilever turns it there by T L / EI and moves it by T L² / 2 EI; one at a

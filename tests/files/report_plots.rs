@@ -1,10 +1,10 @@
 //! Figures show the data inside their canvas, for any data.
 
-use flexbody_report::history::Column;
-use flexbody_report::plots::{
+use flexbody_figures::plots::{
     Barrier, BodyMotion, Connector, ConnectorKind, EnergyRun, Flight, Motion, Scenery, convergence,
     energy, motion,
 };
+use flexbody_report::history::Column;
 use flexbody_report::{History, HistoryRow};
 
 /// Values of an attribute, in the order of the file.

@@ -3,9 +3,10 @@
 
 use crate::reference::documents::plates;
 use crate::reference::documents::problem as parsed;
-use flexbody_driver::elastic_figures::{deflections, limits, stresses};
-use flexbody_driver::figures::of_simulation;
-use flexbody_driver::{check, shell_fields, simulate};
+use flexbody_driver::{check, simulate};
+use flexbody_figures::elastic_figures::{deflections, limits, stresses};
+use flexbody_figures::of_simulation;
+use flexbody_figures::shell_fields;
 use serde_json::Value;
 use std::path::Path;
 

@@ -1,7 +1,8 @@
 //! Problems of structures that do not move: gradients, estimated errors, optima, faults, fields.
 
-use flexbody_driver::statics::{StaticDesign, error, fields};
+use flexbody_driver::statics::{StaticDesign, error};
 use flexbody_driver::{CheckedDerivative, KnownEvaluations, Optimisation, check, optimise};
+use flexbody_figures::statics::fields;
 use flexbody_problem::{Override, Problem};
 use serde_json::Value;
 use std::ops::ControlFlow;

@@ -2,14 +2,15 @@
 
 use crate::reference::documents::problem as parsed;
 use flexbody_driver::Simulation;
-use flexbody_driver::elastic_figures::{limits, stresses};
-use flexbody_driver::figures::of_simulation;
-use flexbody_driver::traces::positions;
-use flexbody_driver::{shell_fields, simulate};
+use flexbody_driver::simulate;
+use flexbody_figures::elastic_figures::{limits, stresses};
+use flexbody_figures::of_simulation;
+use flexbody_figures::plots::{History, Limit, histories};
+use flexbody_figures::shell_fields;
+use flexbody_figures::traces::positions;
 use flexbody_mechanics::functions::Function;
 use flexbody_mechanics::functions::evaluate::sample;
 use flexbody_problem::Problem;
-use flexbody_report::plots::{History, Limit, histories};
 use serde_json::Value;
 use std::path::Path;
 

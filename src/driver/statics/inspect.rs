@@ -14,7 +14,7 @@ impl StaticDesign {
     }
 
     /// The displacements of the nodes in a mode.
-    pub(super) fn motion_of_mode(&self, x: &[f64]) -> Option<Vec<Vec3<f64>>> {
+    pub fn motion_of_mode(&self, x: &[f64]) -> Option<Vec<Vec3<f64>>> {
         let workspace = self.shared();
         let modal = workspace.modal.as_ref()?;
         Some(modal.motion(&self.scene.structure, x).displacement)

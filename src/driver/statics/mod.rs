@@ -3,13 +3,10 @@
 pub mod check;
 mod derivatives;
 pub mod error;
-pub mod fields;
-pub mod figures;
 mod inspect;
 mod lifted;
 mod limits;
 pub mod precision;
-pub mod stages;
 
 use crate::integrate::WorkCounts;
 use crate::math::soft_max::{Smoothed, smoothed};

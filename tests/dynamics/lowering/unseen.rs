@@ -185,7 +185,7 @@ fn an_optimisation_sees_one_of_two_machines() {
     assert!(relative(&design(&a), &design(&b)) < 1e-9);
     let values = [&a, &b].map(|of| of.optimum.objective.value);
     assert!(relative(&values[..1], &values[1..]) < 1e-9);
-    let figures = driver::figures::of_optimisation(&focused, &a);
+    let figures = flexbody_figures::of_optimisation(&focused, &a);
     assert!(figures.iter().any(|(name, _)| *name == "motion.svg"));
 
     let told = driver::explain(&both);

@@ -5,23 +5,23 @@ use super::elastic_figures::{
     colours, deflections, displaced, elastic, has_stress, leave_out_small, limits, patches,
     stresses,
 };
-use super::ends::Ends;
-use super::optimise::Optimisation;
 use super::shells;
-use super::simulate::Simulation;
 use super::statics::figures as of_structures;
 use super::traces;
+use crate::driver::Optimisation;
+use crate::driver::Simulation;
+use crate::driver::ends::Ends;
 use crate::functions::evaluate::sample;
 use crate::functions::snapshot::Snapshot;
 use crate::functions::turning::turns;
 use crate::functions::{Function, Instant, Reduction};
 use crate::math::Vec3;
-use crate::problem::{Drawing, Outline, Problem, Trace};
-use crate::report::History;
-use crate::report::plots::{
+use crate::plots::{
     Barrier, BodyMotion, EnergyRun, Flight, History as Curves, Motion, Scenery, convergence,
     energy, histories, motion,
 };
+use crate::problem::{Drawing, Outline, Problem, Trace};
+use crate::report::History;
 
 /// A file's name and content.
 pub type NamedFile = (&'static str, Vec<u8>);

@@ -4,8 +4,8 @@ mod stage;
 
 pub use stage::{Arrow, Body, Link, Shape, Stage};
 
-use super::history::Column;
-use super::{History, HistoryRow, Optimum};
+use crate::report::history::Column;
+use crate::report::{History, HistoryRow, Optimum};
 use serde::Serialize;
 
 const FRAME: &str = include_str!("page.html");

@@ -1,15 +1,15 @@
 //! Figures of bodies that deform: coloured parts, displacements and stresses against time.
 
 use super::shells;
-use super::simulate::Simulation;
+use crate::driver::Simulation;
 use crate::functions::instant::DeformationKind;
 use crate::functions::snapshot::Snapshot;
 use crate::functions::{Function, Instant, Reduction};
 use crate::integrate::Trajectory;
 use crate::math::Vec3;
 use crate::model::Model;
+use crate::plots::{Coloured, History as Curves, Limit, Patch};
 use crate::problem::{BeamFibres, DeformedLine, Drawing, ElasticPoint, Outline, Problem, larger};
-use crate::report::plots::{Coloured, History as Curves, Limit, Patch};
 
 /// Curves that stay below this part of the largest value are not drawn.
 const SEEN: f64 = 1e-2;

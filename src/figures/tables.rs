@@ -1,7 +1,7 @@
 //! Results of a simulation at every instant, as comma separated values of full precision.
 
-use super::figures::NamedFile;
-use super::simulate::Simulation;
+use super::NamedFile;
+use crate::driver::Simulation;
 use crate::functions::Function;
 use crate::functions::evaluate::sample;
 use crate::functions::snapshot::Snapshot;

@@ -3,7 +3,8 @@
 use super::axis::Axis;
 use super::canvas::{Anchor, Canvas, PALETTE, Pixel};
 use super::panel::{BELOW, Key, Legend, Panel, room_left};
-use crate::{PrecisionOfMesh, ReportError};
+use crate::FigureError;
+use crate::report::PrecisionOfMesh;
 use plotters::style::RGBColor;
 
 /// Width of the picture, and height of its frame \[px\].
@@ -28,11 +29,11 @@ struct Curve {
 /// the CPU time of the solution, logarithmic. An SVG text. Functions that no mesh changes have no curve.
 ///
 /// # Errors
-/// [`ReportError::NothingToDraw`] if there is no difference to draw.
-pub fn mesh_precision(measured: &PrecisionOfMesh) -> Result<String, ReportError> {
+/// [`FigureError::NothingToDraw`] if there is no difference to draw.
+pub fn mesh_precision(measured: &PrecisionOfMesh) -> Result<String, FigureError> {
     let curves = curves(measured);
     if curves.is_empty() {
-        return Err(ReportError::NothingToDraw {
+        return Err(FigureError::NothingToDraw {
             figure: "work_precision",
             missing: "no function changes with the mesh",
         });
@@ -85,7 +86,7 @@ fn curves(measured: &PrecisionOfMesh) -> Vec<Curve> {
         let of_gradient = k == count;
         let f = if of_gradient { measured.chosen } else { k };
         let name = measured.functions.get(f).cloned().unwrap_or_default();
-        let point = |row: &crate::MeshRow| {
+        let point = |row: &crate::report::MeshRow| {
             let error = measured.errors(row)?[k];
             let seconds = row.seconds
                 + if of_gradient {
@@ -113,7 +114,7 @@ fn curves(measured: &PrecisionOfMesh) -> Vec<Curve> {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::MeshRow;
+    use crate::report::MeshRow;
 
     fn measured() -> PrecisionOfMesh {
         let row = |cuts: usize| {

@@ -3,7 +3,8 @@
 use super::axis::Axis;
 use super::canvas::{Anchor, Canvas, INK, PALETTE, Pixel};
 use super::panel::{BELOW, Key, Legend, Panel, room_left};
-use crate::{PrecisionRow, ReportError, WorkPrecision};
+use crate::FigureError;
+use crate::report::{PrecisionRow, WorkPrecision};
 use plotters::style::RGBColor;
 
 /// Width of a panel with its axis, and height of its frame \[px\].
@@ -39,11 +40,11 @@ struct Curve<'a> {
 /// a method, dashed where steps follow a tolerance. An SVG text.
 ///
 /// # Errors
-/// [`ReportError::NothingToDraw`] if there are no rows.
-pub fn work_precision(measured: &WorkPrecision) -> Result<String, ReportError> {
+/// [`FigureError::NothingToDraw`] if there are no rows.
+pub fn work_precision(measured: &WorkPrecision) -> Result<String, FigureError> {
     let curves = curves(&measured.rows);
     if curves.is_empty() {
-        return Err(ReportError::NothingToDraw {
+        return Err(FigureError::NothingToDraw {
             figure: "work_precision",
             missing: "no method reached the end of the motion",
         });

@@ -1,11 +1,11 @@
 //! Points whose paths are drawn: where they are, and their positions against time.
 
 use super::elastic_figures::{curves_of, elastic};
-use super::simulate::Simulation;
+use crate::driver::Simulation;
 use crate::functions::snapshot::Snapshot;
 use crate::math::Vec3;
+use crate::plots::History as Curves;
 use crate::problem::{Drawing, Trace};
-use crate::report::plots::History as Curves;
 
 /// Motions below this part of the size of all motions are round-off.
 const ROUND_OFF: f64 = 1e-9;

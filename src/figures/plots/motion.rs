@@ -5,7 +5,7 @@ use super::canvas::{Anchor, BLACK, Canvas, GROUND, PALETTE};
 use super::connectors::{ConnectorKind, Point};
 use super::lapse::{Motion, draw_lapse, lapse_legend, stress_range};
 use super::panel::{BELOW, Key, Legend, Panel, room_left};
-use crate::ReportError;
+use crate::FigureError;
 use plotters::style::RGBColor;
 
 /// A barrier that the projectile must clear.
@@ -39,15 +39,15 @@ const GAP: f64 = 20.0;
 /// text.
 ///
 /// # Errors
-/// [`ReportError::NothingToDraw`] if there is no outline with a finite point.
-pub fn motion(designs: &[Motion], scenery: &Scenery) -> Result<String, ReportError> {
+/// [`FigureError::NothingToDraw`] if there is no outline with a finite point.
+pub fn motion(designs: &[Motion], scenery: &Scenery) -> Result<String, FigureError> {
     let outlines = |design: &Motion| {
         let bodies = design.bodies.iter().flat_map(|body| &body.outlines);
         bodies.flatten().copied().collect::<Vec<Point>>()
     };
     let mut points: Vec<Point> = designs.iter().flat_map(outlines).collect();
     if !points.iter().any(|[x, y]| x.is_finite() && y.is_finite()) {
-        return Err(ReportError::NothingToDraw {
+        return Err(FigureError::NothingToDraw {
             figure: "motion",
             missing: "no body has an outline",
         });

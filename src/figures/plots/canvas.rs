@@ -1,6 +1,6 @@
 //! A drawing surface in pixels that becomes an SVG text, by plotters.
 
-use crate::ReportError;
+use crate::FigureError;
 use crate::problem::visible;
 use plotters::drawing::{DrawingAreaErrorKind, IntoDrawingArea};
 use plotters::element::{Circle, PathElement, Polygon, Text};
@@ -149,7 +149,7 @@ impl Canvas {
     }
 
     /// The picture as SVG.
-    pub fn svg(&self) -> Result<String, ReportError> {
+    pub fn svg(&self) -> Result<String, FigureError> {
         let fine = |length: f64| (length * FINE).round() as i32;
         let mut svg = String::new();
         let size = (

@@ -3,7 +3,8 @@
 use super::axis::{Axis, Scale};
 use super::canvas::{Canvas, PALETTE};
 use super::panel::{BELOW, Key, Legend, Panel, room_left};
-use crate::{History, HistoryRow, ReportError};
+use crate::FigureError;
+use crate::report::{History, HistoryRow};
 use plotters::style::RGBColor;
 
 const WIDTH: f64 = 640.0;
@@ -25,10 +26,10 @@ struct Curve<'a> {
 /// axis and are marked; values that are not finite leave a gap.
 ///
 /// # Errors
-/// [`ReportError::NothingToDraw`] for a history without rows.
-pub fn convergence(history: &History) -> Result<String, ReportError> {
+/// [`FigureError::NothingToDraw`] for a history without rows.
+pub fn convergence(history: &History) -> Result<String, FigureError> {
     let Some(last) = history.rows.iter().map(|row| row.iteration).max() else {
-        return Err(ReportError::NothingToDraw {
+        return Err(FigureError::NothingToDraw {
             figure: "convergence",
             missing: "the history has no iterations",
         });

@@ -1,10 +1,10 @@
 //! Structures on a page: thickness, shapes under load, modes.
 
-use super::StaticDesign;
 use super::figures::{cameras, deformed, factors, modes, thickness};
+use crate::driver::statics::StaticDesign;
+use crate::page::{Body, Shape, Stage, rounded};
+use crate::plots::{Camera, StructureView};
 use crate::problem::Problem;
-use crate::report::page::{Body, Shape, Stage, rounded};
-use crate::report::plots::{Camera, StructureView};
 
 /// The stages of designs.
 pub fn stages(problem: &Problem, designs: &[(&str, &StaticDesign)]) -> Vec<Stage> {

@@ -5,7 +5,7 @@ use super::canvas::{BLACK, Canvas, INK, MORE, PALETTE};
 use super::colours::colour;
 use super::connectors::{self, Connector, Point};
 use super::panel::{Key, Legend, Panel};
-use crate::number::significant;
+use crate::report::number::significant;
 use plotters::style::RGBColor;
 
 /// A body at the instants of a time lapse.

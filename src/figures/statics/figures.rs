@@ -1,10 +1,10 @@
 //! Pictures of structures: thickness, deformed shape with stress, mode shapes.
 
-use super::StaticDesign;
+use crate::driver::statics::StaticDesign;
 use crate::math::Vec3;
+use crate::plots::{Camera, StructureView, convergence, structure};
 use crate::problem::{BeamFibres, Problem, larger};
 use crate::report::History;
-use crate::report::plots::{Camera, StructureView, convergence, structure};
 use crate::shell_fields::UNKNOWN;
 use crate::structures::beam::{BEAM_NODES, Beam};
 use crate::structures::functions::Solved;

@@ -1,10 +1,10 @@
 //! Forces for the page: reactions of joints and applied forces, as arrows.
 
-use super::simulate::Simulation;
+use crate::driver::Simulation;
 use crate::functions::snapshot::Snapshot;
 use crate::math::Vec3;
 use crate::model::{Axes, LoadKind};
-use crate::report::page::{Arrow, rounded};
+use crate::page::{Arrow, rounded};
 
 /// Most arrows: more hide the machine.
 const MOST: usize = 24;

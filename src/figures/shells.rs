@@ -3,8 +3,8 @@
 use crate::math::Vec3;
 use crate::model::Model;
 use crate::model::finite::{ElementMesh, FiniteElements};
+use crate::plots::Patch;
 use crate::problem::{BeamFibres, Drawing, larger};
-use crate::report::plots::Patch;
 use crate::system::finite::stress_ratios;
 
 /// Bodies with at most this number of elements are drawn in four parts an element, others in one.

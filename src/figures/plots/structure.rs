@@ -2,7 +2,7 @@
 
 use super::canvas::{Anchor, Canvas, INK, Pixel};
 use super::colours::colour;
-use crate::ReportError;
+use crate::FigureError;
 
 /// One view of a structure.
 pub struct StructureView {
@@ -80,10 +80,10 @@ const MARGIN: f64 = 14.0;
 ///
 /// # Errors
 /// If there is nothing to draw.
-pub fn structure(rows: &[Vec<StructureView>], camera: &Camera) -> Result<String, ReportError> {
+pub fn structure(rows: &[Vec<StructureView>], camera: &Camera) -> Result<String, FigureError> {
     let columns = rows.iter().map(Vec::len).max().unwrap_or(0);
     if columns == 0 {
-        return Err(ReportError::NothingToDraw {
+        return Err(FigureError::NothingToDraw {
             figure: "structure",
             missing: "elements",
         });
@@ -190,7 +190,7 @@ fn legend(canvas: &mut Canvas, view: &StructureView, (left, top): Pixel) {
     for k in 0..=NUMBERS {
         let part = k as f64 / NUMBERS as f64;
         let y = bar + height * (1.0 - part);
-        let text = crate::number::significant(low + part * (high - low), 3);
+        let text = crate::report::number::significant(low + part * (high - low), 3);
         canvas.text((left + 17.0, y), &text, Anchor::Left);
     }
 }

@@ -2,22 +2,23 @@
 
 use super::connectors::{Joined, joined};
 use super::elastic_figures::{colours, deflections, stresses};
-use super::ends::Ends;
 use super::forces::arrows;
-use super::optimise::asked;
 use super::shapes::{Detail, shape, thickness};
-use super::simulate::Simulation;
 use super::statics::stages as of_structures;
 use super::traces;
+use crate::driver::Simulation;
+use crate::driver::ends::Ends;
+use crate::driver::optimise::requested;
 use crate::functions::Function;
 use crate::functions::evaluate::sample;
 use crate::functions::snapshot::Snapshot;
 use crate::functions::turning::turns;
 use crate::math::Vec3;
+use crate::page;
+use crate::page::{Body, Chart, Curve, Link, Stage, convergence, rounded};
+use crate::plots::{ConnectorKind, History as Curves};
 use crate::problem::{Drawing, Outline, Problem};
-use crate::report::page::{Body, Chart, Curve, Link, Stage, convergence, rounded};
-use crate::report::plots::{ConnectorKind, History as Curves};
-use crate::report::{History, Optimum, page};
+use crate::report::{History, Optimum};
 
 /// Most frames of a motion.
 const MOST_FRAMES: usize = 240;
@@ -131,7 +132,7 @@ fn curves(problem: &Problem, motions: &[Shown]) -> Vec<Chart> {
         (title, name) => format!("{name}, {title}"),
     };
     let mut all = Vec::new();
-    let mut shown: Vec<usize> = asked(problem).collect();
+    let mut shown: Vec<usize> = requested(problem).collect();
     if shown.is_empty() {
         shown = (0..problem.function_names.len()).collect();
     }

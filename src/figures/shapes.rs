@@ -2,12 +2,12 @@
 
 use super::elastic_figures::{displaced, elastic, has_stress};
 use super::shells::{self, QUARTERS};
-use super::simulate::Simulation;
+use crate::driver::Simulation;
 use crate::functions::snapshot::Snapshot;
 use crate::math::Vec3;
 use crate::model::finite::ElementMesh;
+use crate::page::{Shape, place, rounded};
 use crate::problem::{Drawing, Outline, larger};
-use crate::report::page::{Shape, place, rounded};
 use std::collections::BTreeMap;
 
 /// Numbers of a rigid body at an instant.

@@ -3,8 +3,8 @@
 use super::axis::Axis;
 use super::canvas::{Canvas, PALETTE};
 use super::panel::{BELOW, Key, Legend, Panel, room_left};
-use crate::ReportError;
-use crate::sweep::{Sweep, SweptOptimum};
+use crate::FigureError;
+use crate::report::sweep::{Sweep, SweptOptimum};
 
 const WIDTH: f64 = 640.0;
 const HEIGHT: f64 = 280.0;
@@ -13,8 +13,8 @@ const HEIGHT: f64 = 280.0;
 /// that did not converge are dots of another colour. Values that are not finite are left out.
 ///
 /// # Errors
-/// [`ReportError::NothingToDraw`] if no value is finite.
-pub fn sweep(found: &Sweep) -> Result<String, ReportError> {
+/// [`FigureError::NothingToDraw`] if no value is finite.
+pub fn sweep(found: &Sweep) -> Result<String, FigureError> {
     let of = |converged: bool| -> Vec<(f64, f64)> {
         let point = |at: &SweptOptimum| (at.value, at.objective);
         let all = found.optima.iter().filter(|at| at.converged == converged);
@@ -23,7 +23,7 @@ pub fn sweep(found: &Sweep) -> Result<String, ReportError> {
     let (optima, others) = (of(true), of(false));
     let all = || optima.iter().chain(&others);
     if all().next().is_none() {
-        return Err(ReportError::NothingToDraw {
+        return Err(FigureError::NothingToDraw {
             figure: "sweep",
             missing: "no run has an objective",
         });

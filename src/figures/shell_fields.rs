@@ -1,13 +1,13 @@
 //! Shells and beams of elements in motion as files for ParaView: one for each of some instants, and their list.
 
 use super::shells;
-use super::simulate::Simulation;
+use crate::driver::Simulation;
 use crate::functions::snapshot::Snapshot;
 use crate::math::Vec3;
 use crate::model::flexible::FlexibleBody;
 use crate::problem::{BeamFibres, Problem, larger};
-use crate::report::vtu::{Fields, pvd, vtu};
 use crate::system::flexible::{coordinates, rates};
+use crate::vtu::{Fields, pvd, vtu};
 use std::path::{Path, PathBuf};
 
 /// Largest number of instants.

@@ -3,7 +3,7 @@
 use super::axis::Axis;
 use super::canvas::{Anchor, BLACK, Canvas, PALETTE};
 use super::panel::{BELOW, Key, Legend, Panel, room_left};
-use crate::ReportError;
+use crate::FigureError;
 use plotters::style::RGBColor;
 
 /// Energies of one simulation, one entry an instant.
@@ -23,10 +23,10 @@ pub struct EnergyRun {
 /// start on a separate axis. The runs are side by side with the same axes. An SVG text.
 ///
 /// # Errors
-/// [`ReportError::NothingToDraw`] if there is no run, or if a run has no instants or not one
+/// [`FigureError::NothingToDraw`] if there is no run, or if a run has no instants or not one
 /// energy of each kind for every instant.
-pub fn energy(runs: &[EnergyRun]) -> Result<String, ReportError> {
-    let nothing = |missing| ReportError::NothingToDraw {
+pub fn energy(runs: &[EnergyRun]) -> Result<String, FigureError> {
+    let nothing = |missing| FigureError::NothingToDraw {
         figure: "energy",
         missing,
     };

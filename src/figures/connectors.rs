@@ -4,8 +4,8 @@ use crate::functions::snapshot::Snapshot;
 use crate::integrate::Trajectory;
 use crate::math::Vec3;
 use crate::model::{JointKind, LoadKind, Model};
+use crate::plots::{Connector, ConnectorKind};
 use crate::problem::{Drawing, Outline};
-use crate::report::plots::{Connector, ConnectorKind};
 
 /// A point of a body from its centre of mass, or of ground.
 type Fixed = (Option<usize>, Vec3<f64>);

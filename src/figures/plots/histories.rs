@@ -3,8 +3,8 @@
 use super::axis::Axis;
 use super::canvas::{Anchor, BLACK, Canvas, PALETTE};
 use super::panel::{BELOW, Key, Legend, Panel, room_left};
-use crate::ReportError;
-use crate::number::significant;
+use crate::FigureError;
+use crate::report::number::significant;
 use plotters::style::RGBColor;
 
 /// Quantities of one design, one value an instant.
@@ -41,9 +41,9 @@ const BETWEEN: f64 = 18.0;
 /// The curves of all designs. All rows have the same designs and curves. An SVG text.
 ///
 /// # Errors
-/// [`ReportError::NothingToDraw`] if there is no curve, or if a curve has not one value for each instant.
-pub fn histories(rows: &[Row]) -> Result<String, ReportError> {
-    let nothing = |missing| ReportError::NothingToDraw {
+/// [`FigureError::NothingToDraw`] if there is no curve, or if a curve has not one value for each instant.
+pub fn histories(rows: &[Row]) -> Result<String, FigureError> {
+    let nothing = |missing| FigureError::NothingToDraw {
         figure: "history",
         missing,
     };

@@ -1,10 +1,10 @@
 //! Fields of structures for files.
 
-use super::StaticDesign;
 use super::figures::{OfCase, of_case, yield_stresses};
+use crate::driver::statics::StaticDesign;
 use crate::math::Vec3;
-use crate::report::vtu::{Fields, vtu};
 use crate::shell_fields::{name_of_stress, name_of_thickness};
+use crate::vtu::{Fields, vtu};
 use std::f64::consts::PI;
 
 /// Fields of a design: displacements of each load case, modes, thickness, stresses.
