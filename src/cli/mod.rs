@@ -19,6 +19,7 @@ mod simulate;
 mod stability;
 mod starts;
 mod statics;
+mod unknown_word;
 mod work_precision;
 
 use crate::driver::accuracy;
@@ -36,6 +37,7 @@ use std::io;
 use std::io::Read;
 use std::path::{Path, PathBuf};
 use std::process::ExitCode;
+use unknown_word::meant;
 
 /// The command succeeded.
 const DONE: u8 = 0;
@@ -108,7 +110,7 @@ pub fn run(arguments: impl Iterator<Item = OsString>) -> ExitCode {
     let mut arguments: Vec<OsString> = arguments.collect();
     // The page of the whole program fits on a screen; the manual has the rest.
     if let [_, only] = &mut arguments[..]
-        && (only == "--help" || only == "help")
+        && only == "help"
     {
         *only = "-h".into();
     }
@@ -268,7 +270,7 @@ fn read_with(job: &Job, overrides: &[Override]) -> Result<Problem, Failure> {
                 shown(&job.problem),
                 shown(job.problem.parent().unwrap_or(Path::new(".")))
             )),
-            false => Failure::new(code, faults),
+            false => Failure::new(code, format!("{faults}{}", meant(&job.problem))),
         }
     })?;
     if job.vtu && problem.statics.is_none() && !problem.has_shells() {

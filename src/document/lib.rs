@@ -9,6 +9,7 @@ pub mod loads;
 pub mod measured;
 pub mod mechanics;
 pub mod modal;
+pub mod names;
 pub mod prepared;
 pub mod quantity;
 pub mod section;

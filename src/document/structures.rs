@@ -1,6 +1,7 @@
 //! Structures of shells and beams as they are written in a file.
 
 use super::flexible::Damping;
+use crate::names::Names;
 use crate::quantity::{Quantity, Vector};
 use indexmap::IndexMap;
 use schemars::JsonSchema;
@@ -347,8 +348,8 @@ pub enum Held {
 #[derive(Clone, Debug, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 pub struct Support {
-    /// Names of the sets of nodes.
-    pub nodes: Vec<String>,
+    /// The set of nodes, or a list of sets.
+    pub nodes: Names,
     /// What is held: displacements x, y, z and rotations rx, ry, rz; default all of them.
     pub held: Option<Vec<Held>>,
 }

@@ -164,6 +164,19 @@ impl Analysed {
     }
 }
 
+/// Largest part of a limit by which an aggregate may differ from what it stands for.
+const OF_LIMIT: f64 = 1e-2;
+
+/// Whether a function serves constraints alone, and `gap` is small beside their limits.
+fn is_near_its_limits(problem: &Problem, f: usize, gap: f64) -> bool {
+    let constraints = problem.constraints.iter().filter(|own| own.function == f);
+    let limits = constraints.flat_map(|own| [own.lower, own.upper]);
+    let mut limits = limits.filter(|limit| limit.is_finite()).peekable();
+    problem.objective.is_none_or(|own| own.function != f)
+        && limits.peek().is_some()
+        && limits.all(|limit| gap.abs() <= OF_LIMIT * limit.abs())
+}
+
 /// A design with the data of its record and figures.
 pub enum Simulated {
     /// A motion with its observations.
@@ -249,12 +262,13 @@ impl Simulated {
     }
 
     /// Warnings of functions whose aggregates are far from what they stand for, one of a family; `when` says at which design.
+    /// Of a constraint alone, far is what is far in parts of its limits.
     pub(super) fn far(&self, problem: &Problem, used: &[usize], when: &str) -> Vec<String> {
         let one = |&f: &usize| {
             let Smoothed { value, far } = self.smoothed(f)?;
             let name = &problem.function_names[f];
             let unit = with_space(Some(&problem.function_unit(f)));
-            let far = far?;
+            let far = far.filter(|_| !is_near_its_limits(problem, f, self.value(f) - value))?;
             Some(Message {
                 name: name.clone(),
                 size: far.part,

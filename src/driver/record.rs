@@ -305,8 +305,11 @@ fn constraints(
         .collect()
 }
 
-/// A warning if the error of a constraint is larger than its distance from the bounds and than what the optimiser
-/// may violate.
+/// Part of a bound below which the error of a constraint stands in the table alone.
+const NOTABLE: f64 = 1e-3;
+
+/// A warning if the error of a constraint is larger than its distance from the bounds, than a thousandth of the bound and
+/// than what the optimiser may violate.
 fn beyond_margin(problem: &Problem, name: &str, found: &ConstraintValue) -> Option<Message> {
     let error = found.estimated_error?;
     let given = problem.optimiser.constraint_tolerance;
@@ -316,7 +319,7 @@ fn beyond_margin(problem: &Problem, name: &str, found: &ConstraintValue) -> Opti
     let all = below.into_iter().chain(above);
     let (margin, bound) = all.min_by(|a, b| a.0.total_cmp(&b.0))?;
     let margin = margin.max(0.0);
-    if error <= margin + tolerance * bound.abs().max(1.0) {
+    if error <= margin + (tolerance * bound.abs().max(1.0)).max(NOTABLE * bound.abs()) {
         return None;
     }
     let unit = match found.unit.as_deref() {

@@ -5,20 +5,18 @@ use super::elastic_figures::{
     colours, deflections, displaced, elastic, has_stress, leave_out_small, limits, patches,
     stresses,
 };
+use super::flight::release;
 use super::shells;
 use super::statics::figures as of_structures;
 use super::traces;
 use crate::driver::Optimisation;
 use crate::driver::Simulation;
 use crate::driver::ends::Ends;
-use crate::functions::evaluate::sample;
 use crate::functions::snapshot::Snapshot;
-use crate::functions::turning::turns;
-use crate::functions::{Function, Instant, Reduction};
 use crate::math::Vec3;
 use crate::plots::{
-    Barrier, BodyMotion, EnergyRun, Flight, History as Curves, Motion, Scenery, convergence,
-    energy, histories, motion,
+    Barrier, BodyMotion, EnergyRun, History as Curves, Motion, Scenery, convergence, energy,
+    histories, motion,
 };
 use crate::problem::{Drawing, Outline, Problem, Trace};
 use crate::report::History;
@@ -154,31 +152,6 @@ fn energies(title: &str, simulation: &Simulation) -> EnergyRun {
     }
 }
 
-/// The instant of release, and the projectile: at the end of the run, or where the gated range is
-/// largest. None if the objective is no range.
-fn release(
-    simulation: &Simulation,
-    objective: Option<usize>,
-) -> Option<(usize, crate::functions::instant::Projectile<f64>)> {
-    let (written, run) = (&simulation.written, simulation.motion());
-    let which = objective.map_or(0..written.functions.len(), |f| f..f + 1);
-    written.functions[which].iter().find_map(|function| {
-        let Function::Reduced { instant, reduction } = function else {
-            return None;
-        };
-        let Instant::Range { projectile, .. } = instant else {
-            return None;
-        };
-        if *reduction == Reduction::Final {
-            return Some((run.last(), *projectile));
-        }
-        let turns = turns(instant.watched_rotation(), run);
-        let values = sample(instant, &turns, &written.model, run);
-        let best = (0..values.len()).reduce(|b, k| if values[k] > values[b] { k } else { b })?;
-        Some((best, *projectile))
-    })
-}
-
 fn lapse(
     title: &str,
     simulation: &Simulation,
@@ -188,10 +161,8 @@ fn lapse(
 ) -> Motion {
     let run = simulation.motion();
     let model = &simulation.written.model;
-    // A flight is drawn where gravity points down in the view.
-    let falls = drawing.up.dot(&model.gravity) < -0.999 * model.gravity.norm();
-    let release = release(simulation, objective).filter(|_| falls);
-    let end = release.as_ref().map_or(run.last(), |(k, _)| *k);
+    let release = release(simulation, drawing, objective);
+    let end = release.as_ref().map_or(run.last(), |own| own.sample);
     let shown: Vec<usize> = run.shown().into_iter().filter(|&k| k <= end).collect();
     let latest = shown.len() - 1;
     let flat = |p: &Vec3<f64>| drawing.flat(p);
@@ -234,12 +205,7 @@ fn lapse(
                 .collect(),
         })
         .collect();
-    let thrown = release.map(|(_, p)| Trace {
-        name: String::new(),
-        body: p.body,
-        point: p.point,
-        by: Vec::new(),
-    });
+    let (thrown, flight) = release.map(|own| (own.projectile, own.flight)).unzip();
     let same = |a: &Trace, b: &Trace| a.body == b.body && (a.point - b.point).norm() < 1e-9;
     let others = drawing.traces.iter();
     let others = others.filter(|trace| !thrown.iter().any(|thrown| same(trace, thrown)));
@@ -248,14 +214,6 @@ fn lapse(
         (0..=end).map(place).collect()
     };
     let traces = thrown.iter().chain(others).map(trace).collect();
-    let flight = release.map(|(k, p)| {
-        let motion = Snapshot::of(model, run, k).motion(p.body);
-        Flight {
-            position: flat(&motion.point(&p.point)),
-            velocity: flat(&motion.point_velocity(&p.point)),
-            gravity: -drawing.up.dot(&model.gravity),
-        }
-    });
     Motion {
         title: title.to_string(),
         bodies,

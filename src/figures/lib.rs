@@ -15,6 +15,7 @@ mod connectors;
 pub mod elastic_figures;
 mod error;
 mod files;
+mod flight;
 mod forces;
 pub mod page;
 pub mod plots;

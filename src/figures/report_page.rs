@@ -2,6 +2,7 @@
 
 use super::connectors::{Joined, joined};
 use super::elastic_figures::{colours, deflections, stresses};
+use super::flight::release;
 use super::forces::arrows;
 use super::shapes::{Detail, shape, thickness};
 use super::statics::stages as of_structures;
@@ -35,6 +36,7 @@ struct Shown<'a> {
     simulation: &'a Simulation,
     drawing: Drawing,
     stresses: Curves,
+    objective: Option<usize>,
 }
 
 impl<'a> Shown<'a> {
@@ -45,6 +47,7 @@ impl<'a> Shown<'a> {
             simulation,
             stresses: stresses(title, simulation, &drawing),
             drawing,
+            objective: problem.stated_objective().map(|own| own.function),
         }
     }
 }
@@ -215,6 +218,7 @@ fn stage(shown: &Shown, notes: &mut Vec<String>) -> (Option<Stage>, Stage) {
         simulation,
         drawing,
         stresses,
+        objective,
     } = shown;
     let (model, run) = (&simulation.written.model, simulation.motion());
     let bodies = || (0..model.bodies.len()).filter(|body| !model.is_internal(*body));
@@ -272,6 +276,10 @@ fn stage(shown: &Shown, notes: &mut Vec<String>) -> (Option<Stage>, Stage) {
         ));
     }
     let coloured = colours(model, drawing, std::slice::from_ref(stresses));
+    let flight = release(simulation, drawing, *objective)
+        .zip(drawing.ground)
+        .and_then(|(own, ground)| own.flight.path(ground))
+        .map(|path| path.into_iter().map(|p| p.map(rounded)).collect());
     let moving = Stage {
         title: (*title).to_owned(),
         times: frames.iter().map(|&k| run.time(k)).collect(),
@@ -286,6 +294,7 @@ fn stage(shown: &Shown, notes: &mut Vec<String>) -> (Option<Stage>, Stage) {
         view: [list(&drawing.right), list(&drawing.up)],
         ground: drawing.ground,
         barrier: drawing.barrier.map(|own| [own.distance, own.top]),
+        flight: flight.unwrap_or_default(),
         range: coloured.as_ref().map(|own| [0.0, own.largest]),
         label: match &coloured {
             Some(own) => format!("stress [Pa] {}", own.notes.join(", ")),
@@ -324,6 +333,7 @@ fn of_thickness(
         view: moving.view,
         ground: None,
         barrier: None,
+        flight: Vec::new(),
         range: Some([1e3 * least, 1e3 * most]),
         label: "h [mm]".to_owned(),
     })

@@ -12,6 +12,8 @@ use std::collections::BTreeMap;
 
 /// Numbers of a rigid body at an instant.
 const OF_BODY: usize = 9;
+/// Numbers of the two sides of a section at an instant.
+const OF_POINTS: usize = 6;
 
 /// How much of bodies that deform is shown.
 pub(super) struct Detail {
@@ -36,7 +38,10 @@ impl Detail {
     /// Numbers of all bodies at an instant.
     pub(super) fn numbers<'a>(&self, outlines: impl Iterator<Item = &'a Outline>) -> usize {
         let of = |outline: &Outline| match outline {
-            Outline::Deformed(line) => 6 * self.sections(line.points.len() / 2).len(),
+            Outline::Deformed(line) => {
+                let sections = self.sections(line.points.len() / 2).len();
+                (OF_POINTS * sections).min(OF_BODY + line.coordinates())
+            }
             Outline::Shells(line) => 3 * self.nodes(&line.mesh).len(),
             Outline::Hull(_) | Outline::Sphere(_) | Outline::Spokes(_) => OF_BODY,
         };
@@ -139,16 +144,11 @@ pub(super) fn shape(
             let points: Vec<_> = sides.map(|k| &line.points[k]).collect();
             let last = 2 * count - 1;
             let slice = |k: usize| vec![k, k + 1, last - k - 1, last - k];
-            let places = |k: &usize| {
-                let (at, q) = (at(k), elastic(model, &at(k), body));
-                let motion = at.motion(body);
-                let moved = points.iter();
-                let moved = moved.map(|(point, modes)| motion.point(&displaced(point, modes, &q)));
-                moved.flat_map(|p| [p.x, p.y, p.z].map(place)).collect()
-            };
+            let faces = (0..count.saturating_sub(1)).map(slice).collect();
+            let coordinates = |k: &usize| elastic(model, &at(k), body);
             let values = |k: &usize| match fibres {
                 Some(beam) => {
-                    let largest = beam.largest(&elastic(model, &at(k), body));
+                    let largest = beam.largest(&coordinates(k));
                     let between = |ends: &[usize]| {
                         let own = largest[ends[0]..=ends[1]].iter().copied();
                         rounded(own.reduce(larger).unwrap_or(0.0))
@@ -157,10 +157,34 @@ pub(super) fn shape(
                 }
                 None => Vec::new(),
             };
+            let values = frames.iter().map(values).collect();
+            if OF_BODY + line.coordinates() < OF_POINTS * count {
+                let shape = |i: usize| {
+                    let of_points = points.iter().map(|(_, modes)| &modes[i]);
+                    let flat = of_points.flat_map(|n| [n.x, n.y, n.z].map(rounded));
+                    flat.collect()
+                };
+                let undeformed: Vec<_> = points.iter().map(|(point, _)| *point).collect();
+                let coordinates = |k: &usize| coordinates(k).into_iter().map(rounded).collect();
+                return Shape::Modal {
+                    faces,
+                    points: list(&undeformed),
+                    basis: (0..line.coordinates()).map(shape).collect(),
+                    poses: poses(),
+                    coordinates: frames.iter().map(coordinates).collect(),
+                    values,
+                };
+            }
+            let places = |k: &usize| {
+                let (motion, q) = (at(k).motion(body), coordinates(k));
+                let moved = points.iter();
+                let moved = moved.map(|(point, modes)| motion.point(&displaced(point, modes, &q)));
+                moved.flat_map(|p| [p.x, p.y, p.z].map(place)).collect()
+            };
             Shape::Mesh {
-                faces: (0..count.saturating_sub(1)).map(slice).collect(),
+                faces,
                 places: frames.iter().map(places).collect(),
-                values: frames.iter().map(values).collect(),
+                values,
             }
         }
         Outline::Shells(line) => {

@@ -23,6 +23,13 @@ pub struct DeformedLine {
     pub points: Vec<(Vec3<f64>, Vec<Vec3<f64>>)>,
 }
 
+impl DeformedLine {
+    /// The number of elastic coordinates.
+    pub fn coordinates(&self) -> usize {
+        self.points.first().map_or(0, |(_, modes)| modes.len())
+    }
+}
+
 /// A displacement of a point of a flexible body against its axes, in its axes \[m\].
 #[derive(Clone, Debug)]
 pub struct ElasticPoint {

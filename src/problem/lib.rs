@@ -28,7 +28,7 @@ mod notes;
 mod overrides;
 mod parts;
 mod placement;
-mod pointer;
+pub mod pointer;
 mod points;
 mod prune;
 mod quantities;

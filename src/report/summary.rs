@@ -22,15 +22,8 @@ pub fn summary(optimum: &Optimum) -> String {
         text.push_str(&maxima(optimum));
     }
     for (path, found) in &optimum.sensitivities {
-        let units = [&optimum.objective.unit, &found.unit].map(|unit| match unit.as_deref() {
-            None | Some("") => "1".to_owned(),
-            Some(unit) => unit.to_owned(),
-        });
-        let derivative = significant(found.derivative, 6);
-        text.push_str(&format!(
-            "Sensitivity of the optimum to {path}: {derivative} {} per {}\n",
-            units[0], units[1]
-        ));
+        let slope = slope(found.derivative, 6, (&optimum.objective.unit, &found.unit));
+        text.push_str(&format!("Sensitivity of the optimum to {path}: {slope}\n"));
     }
     text.push('\n');
     let KktResiduals {
@@ -167,7 +160,7 @@ fn design(optimum: &Optimum) -> String {
                 name.clone(),
                 significant(variable.start, 6),
                 significant(variable.value, 8),
-                variable.unit.clone().unwrap_or_default(),
+                unit(&variable.unit),
                 interval(variable.lower, variable.upper),
                 match optimum.active_bounds.get(name) {
                     Some(BoundSide::Lower) => "at its lower bound".to_owned(),
@@ -184,6 +177,11 @@ fn design(optimum: &Optimum) -> String {
     )
 }
 
+/// The unit of a table; nothing for numbers without one.
+fn unit(unit: &Option<String>) -> String {
+    with_space(unit.as_deref()).trim_start().to_owned()
+}
+
 fn constraints(optimum: &Optimum) -> String {
     let rows: Vec<Vec<String>> = optimum
         .constraints
@@ -193,7 +191,7 @@ fn constraints(optimum: &Optimum) -> String {
             vec![
                 name.clone(),
                 significant(constraint.value, 6),
-                constraint.unit.clone().unwrap_or_default(),
+                unit(&constraint.unit),
                 interval(constraint.lower, constraint.upper),
                 match constraint.active {
                     Activity::Inactive => "inactive",
@@ -203,7 +201,8 @@ fn constraints(optimum: &Optimum) -> String {
                 }
                 .to_owned(),
                 if active {
-                    sensitivity(optimum, constraint)
+                    let units = (&optimum.objective.unit, &constraint.unit);
+                    slope(constraint.multiplier, 5, units)
                 } else {
                     String::new()
                 },
@@ -288,17 +287,14 @@ fn maxima(optimum: &Optimum) -> String {
     text
 }
 
-/// The value of one unit of the bound.
-fn sensitivity(optimum: &Optimum, constraint: &super::optimum::ConstraintValue) -> String {
-    let per = match constraint.unit.as_deref() {
-        Some("" | "1") => String::new(),
-        unit => format!(" per {}", unit.unwrap_or("unit")),
+/// A derivative with its units; the unit of a number without one is left out.
+fn slope(value: f64, digits: usize, (of, by): (&Option<String>, &Option<String>)) -> String {
+    let per = match with_space(by.as_deref()) {
+        none if none.is_empty() => String::new(),
+        unit => format!(" per{unit}"),
     };
-    format!(
-        "{}{}{per}",
-        significant(constraint.multiplier, 5),
-        with_space(optimum.objective.unit.as_deref()),
-    )
+    let value = significant(value, digits);
+    format!("{value}{}{per}", with_space(of.as_deref()))
 }
 
 /// The verdict of the reduced Hessian.

@@ -46,6 +46,26 @@ fn help_and_version() {
     assert!(files(at.path()).is_empty());
 }
 
+/// A word that is no file is answered by what it may have meant.
+#[test]
+fn a_word_that_is_no_file_has_a_hint() {
+    let at = scratch();
+    std::fs::write(at.path().join("crane.json"), "{}").expect("written");
+    for (word, hint) in [
+        ("simulat", "did you mean the command `optimize simulate`?"),
+        ("crane", "did you mean crane.json?"),
+        (
+            "linkage",
+            "`optimize new NAME --from linkage` writes such a problem",
+        ),
+    ] {
+        let ran = expect(2, at.path(), &[word]);
+        assert!(ran.err.contains(hint), "{}", ran.err);
+    }
+    let ran = expect(2, at.path(), &["nothing/like/it.json"]);
+    assert!(!ran.err.contains("did you mean"), "{}", ran.err);
+}
+
 #[test]
 fn schema_describes_the_problem_file() {
     let at = scratch();

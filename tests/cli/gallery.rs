@@ -1,7 +1,7 @@
 //! `docs/gallery.md` shows every problem: a line, a command, and the picture of its result where there is one.
-//! `FLEXBODY_WRITE=1 cargo test --release --test cli gallery` writes it.
+//! `FLEXBODY_WRITE=1 cargo test --release --test cli gallery` writes it, and simulates what has no picture yet.
 
-use crate::program::{json, read};
+use crate::program::{json, optimize, read, scratch};
 use std::fmt::Write;
 use std::path::{Path, PathBuf};
 
@@ -28,17 +28,46 @@ fn sentence(text: &str) -> String {
     text[..end].replace('|', "\\|")
 }
 
+/// The chapters and their folders.
+const FOLDERS: [(&str, &str); 4] = [
+    ("Rigid machines and structures", "problems"),
+    ("Flexible machines", "problems/flexible"),
+    ("Published benchmarks", "problems/benchmarks"),
+    ("Extreme scenes", "problems/extreme"),
+];
+
+/// Pictures of a result, the most telling first.
+const PICTURES: [&str; 3] = ["motion.svg", "thickness.svg", "deformed.svg"];
+
+/// The picture of a problem: of its committed result, or of its start in `docs/gallery`. Path as seen from `docs`.
+fn picture(name: &str) -> Option<String> {
+    let results = PICTURES.map(|own| format!("../results/{name}/{own}"));
+    let start = format!("gallery/{name}.svg");
+    let mut all = results.into_iter().chain([start]);
+    all.find(|path| root().join("docs").join(path).exists())
+}
+
+/// Simulates the start of a problem, and keeps its picture in `docs/gallery`.
+fn draw(problem: &Path, name: &str) {
+    let at = scratch();
+    let file = problem.to_str().expect("a path");
+    let ran = optimize(at.path(), &["simulate", file, "--output", "out"]);
+    println!("{name}: exit code {}", ran.code);
+    for picture in PICTURES {
+        if let Ok(bytes) = std::fs::read(at.path().join("out").join(picture)) {
+            let path = root().join("docs/gallery").join(format!("{name}.svg"));
+            std::fs::write(path, bytes).expect("is written");
+            return;
+        }
+    }
+}
+
 fn gallery() -> String {
     let mut text = String::from(
         "# Gallery\n\nEvery problem of the folder `problems`, with the command that solves it. \
          `--report` adds a page with the machine in motion.\n",
     );
-    for (title, folder) in [
-        ("Rigid machines and structures", "problems"),
-        ("Flexible machines", "problems/flexible"),
-        ("Published benchmarks", "problems/benchmarks"),
-        ("Extreme scenes", "problems/extreme"),
-    ] {
+    for (title, folder) in FOLDERS {
         let mut plain = String::new();
         let _ = write!(text, "\n## {title}\n");
         for path in problems(folder) {
@@ -57,15 +86,15 @@ fn gallery() -> String {
                 true => format!("optimize {folder}/{file}"),
                 false => format!("optimize simulate {folder}/{file} --output {name}"),
             };
-            let pictures = ["motion.svg", "thickness.svg", "deformed.svg"];
-            let picture = pictures
-                .iter()
-                .find(|own| root().join("results").join(name).join(own).exists());
-            match picture {
+            match picture(name) {
                 Some(picture) => {
+                    let what = match picture.starts_with("..") {
+                        true => "start and optimum",
+                        false => "start",
+                    };
                     let _ = write!(
                         text,
-                        "\n### {name}\n\n{line}\n\n```sh\n{command}\n```\n\n![{name}: start and optimum](../results/{name}/{picture})\n"
+                        "\n### {name}\n\n{line}\n\n```sh\n{command}\n```\n\n![{name}: {what}]({picture})\n"
                     );
                 }
                 None => {
@@ -86,6 +115,17 @@ fn gallery() -> String {
 #[test]
 fn the_gallery_shows_every_problem() {
     let path = root().join("docs/gallery.md");
+    if std::env::var_os("FLEXBODY_WRITE").is_some() {
+        for folder in FOLDERS.map(|(_, folder)| folder) {
+            for problem in problems(folder) {
+                let document = json(&read(&problem));
+                let name = document["name"].as_str().expect("a name");
+                if picture(name).is_none() {
+                    draw(&problem, name);
+                }
+            }
+        }
+    }
     let wanted = gallery();
     if std::env::var_os("FLEXBODY_WRITE").is_some() {
         std::fs::write(&path, &wanted).expect("is written");

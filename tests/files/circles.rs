@@ -242,7 +242,7 @@ fn the_files_of_a_folder_import_each_other_without_circles() {
     let tape = ["integrate", "implicit", "tape"];
     assert!(has(&["integrate", "trajectory"], &tape));
     // A file of a crate of one folder.
-    assert!(has(&["driver", "page"], &["driver", "forces"]));
+    assert!(has(&["figures", "report_page"], &["figures", "forces"]));
     let circle = circle(&imports);
     assert!(
         circle.is_none(),

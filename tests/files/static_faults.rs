@@ -92,6 +92,18 @@ fn faults_of_shells_are_told_with_their_places() {
             "the name of a set of nodes",
         ),
         (
+            "/structures/plate/supports/edge/nodes",
+            json!("x2"),
+            "\"x2\"",
+            "the name of a set of nodes",
+        ),
+        (
+            "/structures/plate/supports/edge/nodes",
+            json!(3),
+            "3",
+            "a name or a list of names",
+        ),
+        (
             "/structures/plate/material",
             json!("metall"),
             "\"metall\"",

@@ -60,6 +60,16 @@ pub(super) fn assert_gradients(name: &str, problem: &Problem) {
     }
 }
 
+/// A support of one set names it by a text or by a list.
+#[test]
+fn one_set_is_a_text_or_a_list() {
+    let set = "/structures/plate/supports/clamped edges/nodes";
+    let of = |changes: &[&str]| solved(&shipped("plate_patches", changes)).function(1).value;
+    let [text, list] = ["\"x0\"", "[\"x0\"]"].map(|value| of(&[&format!("{set}={value}")]));
+    assert_eq!(text, list);
+    assert!(text != of(&[]));
+}
+
 #[test]
 fn gradients_of_the_shipped_problems_agree_with_the_complex_step() {
     assert_gradients("plate_patches", &shipped("plate_patches", &[]));

@@ -3,12 +3,14 @@ const data = JSON.parse(document.getElementById("data").textContent), main = doc
 main.replaceChildren(element("h1", data.name)); if (data.description) main.append(element("p", data.description, "faint"));
 const [verdict, change, ...tables] = data.optimum ? optimumTables(data.optimum) : []; if (verdict) main.append(verdict, change);
 const scenes = data.stages.map((stage, i) => new Scene(stage, i)), charts = data.charts.map((chart, i) => new LineChart(chart, i));
-// Designs beside each other have one scale: the box of all that mean the same.
-for (const s of scenes) {
-  const alike = scenes.filter(o => o.stage.swings === s.stage.swings && o.stage.clock === s.stage.clock && JSON.stringify(o.stage.view) === JSON.stringify(s.stage.view));
-  s.box = [0, 1, 2].map(i => [Math.min(...alike.map(o => o.low[i])), Math.max(...alike.map(o => o.high[i]))]);
+// Designs beside each other have one scale: the box of all that mean the same, with or without flights.
+function frame(box) {
+  for (const s of scenes) {
+    const alike = scenes.filter(o => o.stage.swings === s.stage.swings && o.stage.clock === s.stage.clock && JSON.stringify(o.stage.view) === JSON.stringify(s.stage.view));
+    s.low = [0, 1, 2].map(i => Math.min(...alike.map(o => o[box][0][i]))); s.high = [0, 1, 2].map(i => Math.max(...alike.map(o => o[box][1][i])));
+  }
 }
-for (const s of scenes) { s.low = s.box.map(b => b[0]); s.high = s.box.map(b => b[1]); }
+frame("near");
 const player = { share: 0, speed: 1, playing: false, last: 0 };
 const moving = scenes.filter(s => s.stage.times.length > 1), length = s => s.stage.swings ? 1 : s.stage.times[s.stage.times.length - 1];
 const longest = Math.max(0, ...moving.map(length)), real = moving.some(s => s.stage.clock === "t [s]");
@@ -38,6 +40,10 @@ if (scenes.length) {
   if (drawn.length) {
     const most = Math.max(...drawn.flatMap(s => s.stage.arrows.flatMap(a => a.forces.map(e => Math.hypot(...e.slice(3)))))) || 1, box = element("input"), label = element("label", " forces of joints (blue) and loads (red)");
     box.type = "checkbox"; box.id = "forces"; label.prepend(box); box.onchange = () => { for (const s of drawn) { s.forces = box.checked; s.most = most; } show(); }; settings.append(label);
+  }
+  if (scenes.some(s => s.stage.flight.length)) {
+    const box = element("input"), label = element("label", " the whole flight"); box.type = "checkbox"; box.id = "flight"; label.prepend(box);
+    box.onchange = () => { cameras.forEach(c => c.reset()); frame(box.checked ? "far" : "near"); show(); }; settings.append(label);
   }
   if (coloured.length) {
     const own = coloured.map(s => s.stage.range), limit = (name, side) => {

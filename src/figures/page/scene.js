@@ -48,19 +48,25 @@ class Scene {
     const see = (p, r = 0) => p.forEach((x, i) => { low[i] = Math.min(low[i], x - r); high[i] = Math.max(high[i], x + r); });
     for (const body of this.stage.bodies) {
       const s = body.shape;
-      if (s.kind === "mesh") { for (const frame of s.places) for (let i = 0; i < frame.length; i += 3) see(frame.slice(i, i + 3)); }
+      if (s.kind === "mesh" || s.kind === "modal") { (s.places ?? s.poses).forEach((_, k) => this.point(s, k, k, 0).forEach(p => see(p))); }
       else { const r = s.radius ?? Math.max(0, ...s.points.map(p => Math.hypot(...p))); for (const pose of s.poses) see(pose.slice(0, 3), r); }
     }
     for (const link of this.stage.links) if (link.kind !== "slider") for (const e of link.ends) { see(e.slice(0, 3)); see(e.slice(3)); }
     for (const path of this.stage.paths) for (const p of path) see(p);
     if (!isFinite(low[0])) { low.fill(-1); high.fill(1); }
-    this.low = low; this.high = high;
+    this.near = [[...low], [...high]];
+    const [right, up] = this.stage.view.map(unit), seen = (x, y) => see(right.map((a, i) => a * x + up[i] * y));
+    for (const [x, y] of this.stage.flight) seen(x, y);
+    if (this.stage.flight.length && this.stage.barrier) seen(...this.stage.barrier);
+    this.far = [low, high];
   }
   point(shape, k0, k1, f) { // vertices of a body in ground axes, and its origin
     if (shape.kind === "mesh") { const p = mix(shape.places[k0], shape.places[k1], f); return Array.from({ length: p.length / 3 }, (_, i) => p.slice(3 * i, 3 * i + 3)); }
     const pose = mix(shape.poses[k0], shape.poses[k1], f), origin = pose.slice(0, 3), a = unit(pose.slice(3, 6));
     const c = unit(cross(a, pose.slice(6, 9))), b = cross(c, a);
-    return (shape.points ?? [[0, 0, 0]]).map(p => origin.map((o, i) => o + a[i] * p[0] + b[i] * p[1] + c[i] * p[2]));
+    let points = shape.points ?? [[0, 0, 0]];
+    if (shape.kind === "modal") { const q = mix(shape.coordinates[k0], shape.coordinates[k1], f); points = points.map((p, j) => p.map((x, i) => q.reduce((sum, c, m) => sum + c * shape.basis[m][3 * j + i], x))); }
+    return points.map(p => origin.map((o, i) => o + a[i] * p[0] + b[i] * p[1] + c[i] * p[2]));
   }
   draw(t, camera) {
     const stage = this.stage, ratio = window.devicePixelRatio || 1, width = this.canvas.clientWidth || 480, height = Math.round(Math.min(width * 0.75, 460));
@@ -75,6 +81,7 @@ class Scene {
     const square = this.stage.view.every((axis, k) => dot(unit(axis), [camera.right, camera.up][k]) > 0.9999);
     if (square && stage.ground !== null) { const y = flat(stage.view[1].map(x => x * stage.ground))[1]; g.strokeStyle = "#8c6d31"; g.lineWidth = 1.5; line([[0, y], [width, y]]); g.stroke(); }
     if (square && stage.barrier) { const at = h => flat(stage.view[0].map((x, i) => x * stage.barrier[0] + stage.view[1][i] * h)); g.strokeStyle = ink("--ink"); g.lineWidth = 3; line([at(stage.ground ?? 0), at(stage.barrier[1])]); g.stroke(); }
+    if (square && stage.flight.length) { g.strokeStyle = ink("--accent"); g.lineWidth = 1.5; g.setLineDash([6, 4]); line(stage.flight.map(([x, y]) => flat(stage.view[0].map((a, i) => a * x + stage.view[1][i] * y)))); g.stroke(); g.setLineDash([]); }
     g.strokeStyle = ink("--faint"); g.lineWidth = 1; for (const path of stage.paths) { line(path.map(flat)); g.stroke(); }
     let [k0, k1, f] = between(stage.times, t); if (stage.swings) { k0 = 0; k1 = 1; f = Math.cos(2 * Math.PI * t); }
     const parts = [];
@@ -85,7 +92,7 @@ class Scene {
         if (list.length > 2) { line(list); g.closePath(); g.globalAlpha = alpha; g.fillStyle = fill; g.fill(); g.globalAlpha = 1; } else line(list);
         const thin = list.length > 2 && thickness(list) < 2; g.strokeStyle = list.length > 2 && !thin ? edge : fill; g.lineWidth = thin || list.length === 2 ? 3 : 0.7; g.stroke();
       };
-      if (shape.kind === "mesh") {
+      if (shape.faces) {
         const values = stage.range && shape.values.length && shape.values[k0].length ? mix(shape.values[k0], shape.values[k1], stage.swings ? Math.abs(f) : f) : null;
         shape.faces.forEach((face, i) => { const list = face.map(k => points[k]);
           parts.push([depth(list), outline(list.map(flat), values ? tint(values[i], stage.range) : colour, values ? 1 : 0.55, values ? "rgba(0,0,0,.25)" : colour)]); });

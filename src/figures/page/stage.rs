@@ -27,6 +27,8 @@ pub struct Stage {
     pub ground: Option<f64>,
     /// Position and height of a barrier \[m\].
     pub barrier: Option<[f64; 2]>,
+    /// Flight of the projectile along the directions of the view, until it lands \[m\]; empty without one.
+    pub flight: Vec<[f64; 2]>,
     /// Least and largest value of the colours, if some are shown.
     pub range: Option<[f64; 2]>,
     /// What the colours mean.
@@ -67,7 +69,22 @@ pub enum Shape {
         /// The pose at each instant.
         poses: Vec<[f64; 9]>,
     },
-    /// Faces and lines that deform.
+    /// Faces that deform by a few shapes: of a point `points + Σ coordinates · basis` in body axes.
+    Modal {
+        /// The points of each face.
+        faces: Vec<Vec<usize>>,
+        /// The undeformed points in body axes \[m\].
+        points: Vec<[f64; 3]>,
+        /// Displacement of every point for one unit of each coordinate, x y z one after the other.
+        basis: Vec<Vec<f64>>,
+        /// The pose at each instant.
+        poses: Vec<[f64; 9]>,
+        /// The elastic coordinates at each instant.
+        coordinates: Vec<Vec<f64>>,
+        /// The value of each face at each instant; empty without colours.
+        values: Vec<Vec<f64>>,
+    },
+    /// Faces and lines whose points move freely.
     Mesh {
         /// The points of each face, or the two of a line.
         faces: Vec<Vec<usize>>,

@@ -16,23 +16,30 @@ function optimumTables(o) {
   const verdict = element("p", `${o.message[0].toUpperCase()}${o.message.slice(1)}.`, o.status === "converged" ? "good" : "bad"); verdict.id = "verdict"; all.push(verdict);
   const change = o.start_objective ? ` (${(100 * (o.objective.value / o.start_objective - 1) * Math.sign(o.start_objective)).toFixed(1)} %)` : "";
   all.push(element("p", `${sense} ${o.objective.function}: ${o.start_objective === undefined ? "not known at the start" : number(o.start_objective)} → ${withUnit(o.objective.value, unit)}${change}` + (o.objective.estimated_error ? `, accurate to about ${withUnit(o.objective.estimated_error, unit)}.` : ".")));
+  // What moving an active limit by about one per cent of it does, so that the first order holds; `slope` is d objective / d limit.
+  const words = (slope, which, limit, ofLimit) => {
+    const better = (slope > 0) === (o.objective.sense === "maximise"), step = limit ? Number(`1e${Math.round(Math.log10(Math.abs(limit) / 100))}`) : 1;
+    return `raising the ${which} by ${withUnit(step, ofLimit)} ${slope > 0 ? "raises" : "lowers"} ${o.objective.function} by ${withUnit(step * Math.abs(slope), unit)}: ${better ? "a gain" : "a loss"} (to first order)`;
+  };
+  const ofBound = (name, v) => {
+    const side = o.active_bounds[name], z = side && o.multipliers[side + "_bounds"]?.[name]; if (!z || v.lower === v.upper) return "";
+    return words((side === "lower" ? 1 : -1) * (o.objective.sense === "maximise" ? -z : z), side + " bound", v[side], v.unit);
+  };
   const variables = Object.entries(o.design);
-  all.push(element("h2", "Design variables"), table([["variable"], ["start", "number"], ["optimum", "number"], ["unit"], ["between its bounds"], ["active"]], variables.slice(0, 200).map(([name, v]) => [[name], [number(v.start), "number"], [number(v.value), "number"], [v.unit ?? ""],
-    [v.lower !== undefined && v.upper !== undefined && v.upper > v.lower ? bar(v) : `${v.lower === undefined ? "" : "≥ " + number(v.lower)} ${v.upper === undefined ? "" : "≤ " + number(v.upper)}`], [o.active_bounds[name] ? `${o.active_bounds[name]} bound` : ""]])));
+  all.push(element("h2", "Design variables"), table([["variable"], ["start", "number"], ["optimum", "number"], ["unit"], ["between its bounds"], ["active"], ["what its bound costs"]], variables.slice(0, 200).map(([name, v]) => [[name], [number(v.start), "number"], [number(v.value), "number"], [v.unit ?? ""],
+    [v.lower !== undefined && v.upper !== undefined && v.upper > v.lower ? bar(v) : `${v.lower === undefined ? "" : "≥ " + number(v.lower)} ${v.upper === undefined ? "" : "≤ " + number(v.upper)}`], [o.active_bounds[name] ? `${o.active_bounds[name]} bound` : ""], [ofBound(name, v), "wide"]])));
   if (variables.length > 200) all.push(element("p", `200 of ${variables.length} variables are shown.`, "faint"));
   const constraints = Object.entries(o.constraints);
   if (constraints.length) {
-    const words = (name, c) => {
+    const cost = c => {
       if (c.active === "inactive" || !c.multiplier) return "";
-      // A step of about one per cent of the limit, so that the first order holds.
-      const better = (c.multiplier > 0) === (o.objective.sense === "maximise"), limit = c.active.includes("upper") ? c.upper : c.lower;
-      const step = limit ? Number(`1e${Math.round(Math.log10(Math.abs(limit) / 100))}`) : 1, both = c.lower !== undefined && c.upper !== undefined && c.lower !== c.upper;
-      return `raising the ${both ? (limit === c.upper ? "upper " : "lower ") : ""}limit by ${withUnit(step, c.unit)} ${c.multiplier > 0 ? "raises" : "lowers"} ${o.objective.function} by ${withUnit(step * Math.abs(c.multiplier), unit)}: ${better ? "a gain" : "a loss"} (to first order)`;
+      const side = c.active.includes("upper") ? "upper" : "lower", both = c.lower !== undefined && c.upper !== undefined && c.lower !== c.upper;
+      return words(c.multiplier, both ? side + " limit" : "limit", c[side], c.unit);
     };
     const margin = c => [c.lower === undefined ? Infinity : c.value - c.lower, c.upper === undefined ? Infinity : c.upper - c.value].reduce((a, b) => Math.min(a, b));
     const where = c => c.aggregate ? [c.aggregate.place, c.aggregate.time === undefined ? "" : `t = ${number(c.aggregate.time)} s`].filter(x => x).join(", ") + `, true extreme ${number(c.aggregate.true_maximum)}` : "";
     all.push(element("h2", "Constraints"), table([["constraint"], ["value", "number"], ["limits"], ["margin", "number"], ["worst at"], ["what it costs"]], constraints.slice(0, 200).map(([name, c]) => [[name], [withUnit(c.value, c.unit), "number"],
-      [[c.lower === undefined ? "" : "≥ " + number(c.lower), c.upper === undefined ? "" : "≤ " + number(c.upper)].filter(x => x).join(", ")], [c.active === "inactive" ? number(margin(c)) : "active", "number"], [where(c), "wide"], [words(name, c), "wide"]])));
+      [[c.lower === undefined ? "" : "≥ " + number(c.lower), c.upper === undefined ? "" : "≤ " + number(c.upper)].filter(x => x).join(", ")], [c.active === "inactive" ? number(margin(c)) : "active", "number"], [where(c), "wide"], [cost(c), "wide"]])));
     if (constraints.length > 200) all.push(element("p", `200 of ${constraints.length} constraints are shown.`, "faint"));
   }
   if (o.warnings?.length) { all.push(element("h2", "Warnings")); o.warnings.forEach(w => all.push(element("p", w, "bad"))); }

@@ -76,6 +76,7 @@ fn stage(views: &[StructureView], view: [[f64; 3]; 2], swings: bool) -> Stage {
         view,
         ground: None,
         barrier: None,
+        flight: Vec::new(),
         range: (last.range[1] > last.range[0]).then_some(last.range),
         label: last.label.clone(),
     }

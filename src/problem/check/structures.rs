@@ -140,15 +140,19 @@ impl Checker<'_> {
         );
         for (support, written) in &structure.supports {
             let list = join(&join(&join(&pointer, "supports"), support), "nodes");
-            if written.nodes.is_empty() {
+            if written.nodes.all.is_empty() {
                 self.fault(Finding::new(
                     &list,
                     "an empty list",
                     "one set of nodes at least",
                 ));
             }
-            for (k, set) in written.nodes.iter().enumerate() {
-                self.set_among(&join(&list, k), set, Kind::Nodes, &own);
+            for (k, set) in written.nodes.all.iter().enumerate() {
+                let place = match written.nodes.is_list {
+                    true => join(&list, k),
+                    false => list.clone(),
+                };
+                self.set_among(&place, set, Kind::Nodes, &own);
             }
             if written.held.as_ref().is_some_and(Vec::is_empty) {
                 let place = join(&join(&join(&pointer, "supports"), support), "held");

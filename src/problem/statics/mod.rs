@@ -126,7 +126,7 @@ impl Statics {
                 }
             }
             for support in structure.supports.values() {
-                for set in &support.nodes {
+                for set in &support.nodes.all {
                     supports.push(support_of(support, in_whole(document, name, set)));
                 }
             }
