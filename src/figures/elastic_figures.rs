@@ -1,5 +1,6 @@
 //! Figures of bodies that deform: coloured parts, displacements and stresses against time.
 
+use super::detail::Detail;
 use super::shells;
 use crate::driver::Simulation;
 use crate::functions::instant::DeformationKind;
@@ -12,7 +13,9 @@ use crate::plots::{Coloured, History as Curves, Limit, Patch};
 use crate::problem::{BeamFibres, DeformedLine, Drawing, ElasticPoint, Outline, Problem, larger};
 
 /// Curves that stay below this part of the largest value are not drawn.
-const SEEN: f64 = 1e-2;
+pub(super) const SEEN: f64 = 1e-2;
+/// Most curves of a figure.
+const MOST_CURVES: usize = 24;
 /// Limits are the same up to this part.
 const SAME: f64 = 1e-9;
 
@@ -43,19 +46,23 @@ pub(super) fn has_stress(model: &Model<f64>, body: usize, drawing: &Drawing) -> 
 }
 
 /// Coloured parts of a body; none of a body whose stresses are not known.
-pub(super) fn patches(at: &Snapshot<f64>, body: usize, drawing: &Drawing) -> Vec<Patch> {
+pub(super) fn patches(
+    at: &Snapshot<f64>,
+    body: usize,
+    drawing: &Drawing,
+    detail: &Detail,
+) -> Vec<Patch> {
     let motion = at.motion(body);
     let place = |p: &Vec3<f64>| motion.point(p);
     match (&drawing.outlines[body], &drawing.fibres[body][..]) {
         (Outline::Deformed(line), [beam]) if beam.are_known() => {
-            bent(line, beam, &elastic(at.model, at, body), |p| {
-                drawing.flat(&place(p))
-            })
+            let q = elastic(at.model, at, body);
+            bent((line, beam), &q, detail, |p| drawing.flat(&place(p)))
         }
         (Outline::Shells(_), fibres) => match shells::of(at.model, body) {
             Some(finite) => {
                 let q = shells::unknowns(at.model, body, elastic(at.model, at, body));
-                shells::patches((finite, fibres), &q, place, drawing)
+                shells::patches((finite, fibres), &q, place, (drawing, detail))
             }
             None => Vec::new(),
         },
@@ -65,23 +72,41 @@ pub(super) fn patches(at: &Snapshot<f64>, body: usize, drawing: &Drawing) -> Vec
 
 /// Coloured parts of a bent beam: slices along it, with the larger stress of the sections at their ends.
 fn bent(
-    line: &DeformedLine,
-    beam: &BeamFibres,
+    (line, beam): (&DeformedLine, &BeamFibres),
     q: &[f64],
+    detail: &Detail,
     place: impl Fn(&Vec3<f64>) -> [f64; 2],
 ) -> Vec<Patch> {
-    let moved = |(point, modes): &(Vec3<f64>, Vec<Vec3<f64>>)| place(&displaced(point, modes, q));
-    let border: Vec<[f64; 2]> = line.points.iter().map(moved).collect();
+    let moved = |k: usize| {
+        let (point, modes) = &line.points[k];
+        place(&displaced(point, modes, q))
+    };
+    let sides = detail.sides(line.points.len()).into_iter();
+    let border: Vec<[f64; 2]> = sides.map(moved).collect();
     let last = border.len() - 1;
-    let largest = beam.largest(q);
-    let slices = largest.windows(2).enumerate();
-    let patch = |(k, ends): (usize, &[f64])| Patch {
+    let (largest, sections) = (beam.largest(q), detail.sections(line.points.len() / 2));
+    let patch = |(k, value): (usize, f64)| Patch {
         corners: [k, k + 1, last - k - 1, last - k]
             .map(|i| border[i])
             .to_vec(),
-        value: larger(ends[0], ends[1]),
+        value,
     };
-    slices.map(patch).collect()
+    between(&largest, &sections)
+        .enumerate()
+        .map(patch)
+        .collect()
+}
+
+/// The largest of `values` from each of the sections to the next.
+pub(super) fn between<'a>(
+    values: &'a [f64],
+    sections: &'a [usize],
+) -> impl Iterator<Item = f64> + 'a {
+    let of = |ends: &[usize]| {
+        let own = values[ends[0]..=ends[1]].iter().copied();
+        own.reduce(larger).unwrap_or(0.0)
+    };
+    sections.windows(2).map(of)
 }
 
 /// Where a point is at elastic coordinates `q`.
@@ -125,8 +150,9 @@ pub(super) fn curves_of(
     }
 }
 
-/// Leaves out the curves whose largest value in all designs is far below that of the others.
-pub(super) fn leave_out_small(designs: &mut [Curves]) {
+/// Keeps the curves whose largest value in all designs is at least the part `seen` of that of the others, and of these the
+/// largest that a figure has room for. Returns what a label adds if some are left out for want of room.
+pub(super) fn keep_the_largest(designs: &mut [Curves], seen: f64) -> String {
     let peak = |values: &[f64]| values.iter().fold(0.0_f64, |m, x| m.max(x.abs()));
     let count = designs.iter().map(|design| design.curves.len()).min();
     let peaks = (0..count.unwrap_or(0)).map(|i| {
@@ -135,11 +161,22 @@ pub(super) fn leave_out_small(designs: &mut [Curves]) {
     });
     let peaks: Vec<f64> = peaks.collect();
     let largest = peaks.iter().copied().fold(0.0, f64::max);
+    let mut order: Vec<usize> = (0..peaks.len())
+        .filter(|&i| peaks[i] >= seen * largest)
+        .collect();
+    let all = order.len();
+    order.sort_by(|&a, &b| peaks[b].total_cmp(&peaks[a]));
+    order.truncate(MOST_CURVES);
     for design in designs {
-        let mut peaks = peaks.iter();
-        let seen =
-            |_: &(String, Vec<f64>)| peaks.next().is_some_and(|peak| *peak >= SEEN * largest);
-        design.curves.retain(seen);
+        let mut i = 0;
+        design.curves.retain(|_| {
+            i += 1;
+            order.contains(&(i - 1))
+        });
+    }
+    match all > MOST_CURVES {
+        true => format!(", the {MOST_CURVES} largest of {all}"),
+        false => String::new(),
     }
 }
 

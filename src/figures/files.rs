@@ -1,8 +1,9 @@
 //! The figures of a simulation and of an optimisation.
 
 use super::connectors::connectors;
+use super::detail::Detail;
 use super::elastic_figures::{
-    colours, deflections, displaced, elastic, has_stress, leave_out_small, limits, patches,
+    SEEN, colours, deflections, displaced, elastic, has_stress, keep_the_largest, limits, patches,
     stresses,
 };
 use super::flight::release;
@@ -20,6 +21,10 @@ use crate::plots::{
 };
 use crate::problem::{Drawing, Outline, Problem, Trace};
 use crate::report::History;
+
+/// Most numbers of the bodies of a design in the picture of its motion, about 1 MB: of large machines beams are drawn at fewer
+/// sections and shells by their corners.
+const MOST_NUMBERS: usize = 40_000;
 
 /// A file's name and content.
 pub type NamedFile = (&'static str, Vec<u8>);
@@ -83,9 +88,9 @@ fn figures(
     if drawings.iter().any(deforms) {
         let curves = pairs().map(|((title, design), drawing)| deflections(title, design, drawing));
         let mut curves: Vec<Curves> = curves.collect();
-        leave_out_small(&mut curves);
-        let label = "displacement in the body's axes [m]";
-        all.push(("deflection.svg", histories(&[(label, curves)])));
+        let some = keep_the_largest(&mut curves, SEEN);
+        let label = format!("displacement in the body's axes [m]{some}");
+        all.push(("deflection.svg", histories(&[(&label, curves)])));
     }
     let flexible = |(_, design): &(&str, &Simulation)| !design.written.model.flexible.is_empty();
     let traced = |drawing: &Drawing| !drawing.traces.is_empty();
@@ -103,8 +108,9 @@ fn figures(
         for (own, (_, design)) in stressed.iter_mut().zip(designs) {
             own.limits = limits(problem, design);
         }
-        let rows = [("largest stress [Pa]", stressed)];
-        all.push(("stress.svg", histories(&rows)));
+        let some = keep_the_largest(&mut stressed, 0.0);
+        let label = format!("largest stress [Pa]{some}");
+        all.push(("stress.svg", histories(&[(&label, stressed)])));
     }
     all.into_iter()
         .filter_map(|(name, svg)| Some((name, svg.ok()?.into_bytes())))
@@ -174,11 +180,11 @@ fn lapse(
             false => shown[i * latest / (snapshots - 1)],
         })
         .collect();
-    let bodies = model
-        .bodies
-        .iter()
-        .enumerate()
-        .filter(|(body, _)| !model.is_internal(*body))
+    let seen = || (0..model.bodies.len()).filter(|body| !model.is_internal(*body));
+    let outlines = seen().map(|body| &drawing.outlines[body]);
+    let detail = Detail::of(outlines, MOST_NUMBERS / snapshots);
+    let bodies = seen()
+        .map(|body| (body, &model.bodies[body]))
         .map(|(body, rigid)| BodyMotion {
             name: rigid.name.clone(),
             outlines: instants
@@ -187,7 +193,9 @@ fn lapse(
                     let at = Snapshot::of(model, run, k);
                     let motion = at.motion(body);
                     let q = shells::unknowns(model, body, elastic(model, &at, body));
-                    outline(&drawing.outlines[body], &q, |s| flat(&motion.point(s)))
+                    outline(&drawing.outlines[body], &q, &detail, |s| {
+                        flat(&motion.point(s))
+                    })
                 })
                 .collect(),
             patches: instants
@@ -195,7 +203,7 @@ fn lapse(
                 .filter(|_| has_stress(model, body, drawing))
                 .map(|&k| {
                     let at = Snapshot::of(model, run, k);
-                    patches(&at, body, drawing)
+                    patches(&at, body, drawing, &detail)
                 })
                 .collect(),
             depths: instants
@@ -225,10 +233,18 @@ fn lapse(
 }
 
 /// The silhouette of a body with elastic coordinates `q` whose points are shown by `place`.
-fn outline(outline: &Outline, q: &[f64], place: impl Fn(&Vec3<f64>) -> [f64; 2]) -> Vec<[f64; 2]> {
+fn outline(
+    outline: &Outline,
+    q: &[f64],
+    detail: &Detail,
+    place: impl Fn(&Vec3<f64>) -> [f64; 2],
+) -> Vec<[f64; 2]> {
     match outline {
-        Outline::Deformed(line) => (line.points.iter())
-            .map(|(point, modes)| place(&displaced(point, modes, q)))
+        Outline::Deformed(line) => (detail.sides(line.points.len()).into_iter())
+            .map(|k| {
+                let (point, modes) = &line.points[k];
+                place(&displaced(point, modes, q))
+            })
             .collect(),
         Outline::Shells(line) => {
             let nodes = shells::places(&line.mesh, q);

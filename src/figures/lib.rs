@@ -12,6 +12,7 @@
 //! | [`vtu`] | a file of fields, a pure function of plain data |
 
 mod connectors;
+mod detail;
 pub mod elastic_figures;
 mod error;
 mod files;

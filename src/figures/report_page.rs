@@ -1,10 +1,11 @@
 //! The page of a result: what moves, and the curves of its functions.
 
 use super::connectors::{Joined, joined};
-use super::elastic_figures::{colours, deflections, stresses};
+use super::detail::Detail;
+use super::elastic_figures::{SEEN, colours, deflections, keep_the_largest, stresses};
 use super::flight::release;
 use super::forces::arrows;
-use super::shapes::{Detail, shape, thickness};
+use super::shapes::{shape, thickness};
 use super::statics::stages as of_structures;
 use super::traces;
 use crate::driver::Simulation;
@@ -188,24 +189,24 @@ fn curves(problem: &Problem, motions: &[Shown]) -> Vec<Chart> {
         energies.push(Curve::new(named(title, "total"), total));
     }
     all.push(chart("Energy", "J", energies));
-    let of = |curves: &dyn Fn(&Shown) -> Curves| {
-        let each = motions.iter().flat_map(|own| {
-            let found = curves(own);
-            let time = found.time;
-            found.curves.into_iter().map(move |(name, values)| {
-                let points = time.iter().zip(values).map(|(&t, v)| [t, v]);
-                Curve::new(named(own.title, &name), points)
+    let stressed = motions.iter().map(|own| own.stresses.clone()).collect();
+    let deflected = |own: &Shown| deflections(own.title, own.simulation, &own.drawing);
+    let deflected = motions.iter().map(deflected).collect();
+    for (title, up, mut designs) in [
+        ("Largest stress", "Pa", stressed),
+        ("Displacement in the body's axes", "m", deflected),
+    ] {
+        let designs: &mut Vec<Curves> = &mut designs;
+        let some = keep_the_largest(designs, SEEN);
+        let curves = designs.iter().flat_map(|own| {
+            own.curves.iter().map(|(name, values)| {
+                let points = own.time.iter().zip(values).map(|(&t, &v)| [t, v]);
+                Curve::new(named(&own.title, name), points)
             })
         });
-        each.collect::<Vec<Curve>>()
-    };
-    let deflected = |own: &Shown| deflections(own.title, own.simulation, &own.drawing);
-    for (title, up, curves) in [
-        ("Largest stress", "Pa", of(&|own| own.stresses.clone())),
-        ("Displacement in the body's axes", "m", of(&deflected)),
-    ] {
+        let curves: Vec<Curve> = curves.collect();
         if !curves.is_empty() {
-            all.push(chart(title, up, curves));
+            all.push(chart(&format!("{title}{some}"), up, curves));
         }
     }
     all

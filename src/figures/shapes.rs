@@ -1,6 +1,7 @@
 //! Shapes of bodies on a page: rigid ones by their poses, those that deform as meshes.
 
-use super::elastic_figures::{displaced, elastic, has_stress};
+use super::detail::{Detail, OF_BODY, OF_POINTS};
+use super::elastic_figures::{between, displaced, elastic, has_stress};
 use super::shells::{self, QUARTERS};
 use crate::driver::Simulation;
 use crate::functions::snapshot::Snapshot;
@@ -9,87 +10,6 @@ use crate::model::finite::ElementMesh;
 use crate::page::{Shape, place, rounded};
 use crate::problem::{Drawing, Outline, larger};
 use std::collections::BTreeMap;
-
-/// Numbers of a rigid body at an instant.
-const OF_BODY: usize = 9;
-/// Numbers of the two sides of a section at an instant.
-const OF_POINTS: usize = 6;
-
-/// How much of bodies that deform is shown.
-pub(super) struct Detail {
-    /// Part of the sections of beams; of shells all nodes if it is one, else their corners.
-    share: f64,
-}
-
-impl Detail {
-    /// All, or what keeps the numbers of an instant near `most`.
-    pub(super) fn of<'a>(outlines: impl Iterator<Item = &'a Outline>, most: usize) -> Self {
-        let numbers = Self { share: 1.0 }.numbers(outlines);
-        Self {
-            share: (most as f64 / numbers.max(1) as f64).min(1.0),
-        }
-    }
-
-    /// Whether something is left out.
-    pub(super) fn is_thinned(&self) -> bool {
-        self.share < 1.0
-    }
-
-    /// Numbers of all bodies at an instant.
-    pub(super) fn numbers<'a>(&self, outlines: impl Iterator<Item = &'a Outline>) -> usize {
-        let of = |outline: &Outline| match outline {
-            Outline::Deformed(line) => {
-                let sections = self.sections(line.points.len() / 2).len();
-                (OF_POINTS * sections).min(OF_BODY + line.coordinates())
-            }
-            Outline::Shells(line) => 3 * self.nodes(&line.mesh).len(),
-            Outline::Hull(_) | Outline::Sphere(_) | Outline::Spokes(_) => OF_BODY,
-        };
-        outlines.map(of).sum()
-    }
-
-    /// The sections of `count` that are shown, both ends among them.
-    fn sections(&self, count: usize) -> Vec<usize> {
-        let some = ((count as f64 * self.share).round() as usize).clamp(2.min(count), count);
-        let last = count.saturating_sub(1);
-        let gaps = some.saturating_sub(1).max(1);
-        (0..some).map(|i| i * last / gaps).collect()
-    }
-
-    /// The corners of the faces of a shell, four or one, among its nodes.
-    fn corners(&self) -> &'static [[usize; 4]] {
-        match self.is_thinned() {
-            true => &[[0, 2, 8, 6]],
-            false => &QUARTERS,
-        }
-    }
-
-    /// The faces of shells by their nodes.
-    fn faces(&self, mesh: &ElementMesh) -> Vec<Vec<usize>> {
-        let of_element = |nodes: &[usize; 9]| -> Vec<Vec<usize>> {
-            let each = self.corners().iter();
-            each.map(|own| own.map(|local| nodes[local]).to_vec())
-                .collect()
-        };
-        let mut all: Vec<Vec<usize>> = mesh
-            .elements
-            .iter()
-            .flat_map(|element| of_element(&element.nodes))
-            .collect();
-        for ends in &mesh.beams {
-            all.extend(ends.windows(2).map(|half| half.to_vec()));
-        }
-        all
-    }
-
-    /// The nodes that the faces have, in order.
-    fn nodes(&self, mesh: &ElementMesh) -> Vec<usize> {
-        let mut all: Vec<usize> = self.faces(mesh).into_iter().flatten().collect();
-        all.sort_unstable();
-        all.dedup();
-        all
-    }
-}
 
 /// The shape of a body in the frames.
 pub(super) fn shape(
@@ -137,46 +57,44 @@ pub(super) fn shape(
                 _ => None,
             };
             let sections = detail.sections(line.points.len() / 2);
-            // One side, then the other in opposite order.
-            let (count, other) = (sections.len(), line.points.len() - 1);
-            let sides = sections.iter().copied();
-            let sides = sides.chain(sections.iter().rev().map(|&k| other - k));
+            let count = sections.len();
+            let sides = detail.sides(line.points.len()).into_iter();
             let points: Vec<_> = sides.map(|k| &line.points[k]).collect();
             let last = 2 * count - 1;
             let slice = |k: usize| vec![k, k + 1, last - k - 1, last - k];
             let faces = (0..count.saturating_sub(1)).map(slice).collect();
-            let coordinates = |k: &usize| elastic(model, &at(k), body);
+            let elastic_of = |k: &usize| elastic(model, &at(k), body);
             let values = |k: &usize| match fibres {
                 Some(beam) => {
-                    let largest = beam.largest(&coordinates(k));
-                    let between = |ends: &[usize]| {
-                        let own = largest[ends[0]..=ends[1]].iter().copied();
-                        rounded(own.reduce(larger).unwrap_or(0.0))
-                    };
-                    sections.windows(2).map(between).collect()
+                    let largest = beam.largest(&elastic_of(k));
+                    between(&largest, &sections).map(rounded).collect()
                 }
                 None => Vec::new(),
             };
             let values = frames.iter().map(values).collect();
-            if OF_BODY + line.coordinates() < OF_POINTS * count {
+            // The basis once and few numbers a frame, or all points in each.
+            let (of_points, coordinates) = (OF_POINTS * count, line.coordinates());
+            if coordinates * of_points + (OF_BODY + coordinates) * frames.len()
+                < of_points * frames.len()
+            {
                 let shape = |i: usize| {
                     let of_points = points.iter().map(|(_, modes)| &modes[i]);
                     let flat = of_points.flat_map(|n| [n.x, n.y, n.z].map(rounded));
                     flat.collect()
                 };
                 let undeformed: Vec<_> = points.iter().map(|(point, _)| *point).collect();
-                let coordinates = |k: &usize| coordinates(k).into_iter().map(rounded).collect();
+                let elastic = |k: &usize| elastic_of(k).into_iter().map(rounded).collect();
                 return Shape::Modal {
                     faces,
                     points: list(&undeformed),
-                    basis: (0..line.coordinates()).map(shape).collect(),
+                    basis: (0..coordinates).map(shape).collect(),
                     poses: poses(),
-                    coordinates: frames.iter().map(coordinates).collect(),
+                    coordinates: frames.iter().map(elastic).collect(),
                     values,
                 };
             }
             let places = |k: &usize| {
-                let (motion, q) = (at(k).motion(body), coordinates(k));
+                let (motion, q) = (at(k).motion(body), elastic_of(k));
                 let moved = points.iter();
                 let moved = moved.map(|(point, modes)| motion.point(&displaced(point, modes, &q)));
                 moved.flat_map(|p| [p.x, p.y, p.z].map(place)).collect()

@@ -1,5 +1,6 @@
 //! Shells in motion: where their nodes are, their stresses, and coloured parts of their surface.
 
+use super::detail::Detail;
 use crate::math::Vec3;
 use crate::model::Model;
 use crate::model::finite::{ElementMesh, FiniteElements};
@@ -57,8 +58,9 @@ pub(super) fn patches(
     (finite, fibres): (&FiniteElements<f64>, &[BeamFibres]),
     q: &[f64],
     place: impl Fn(&Vec3<f64>) -> Vec3<f64>,
-    drawing: &Drawing,
+    (drawing, detail): (&Drawing, &Detail),
 ) -> Vec<Patch> {
+    const CORNERS: [usize; 4] = [0, 2, 8, 6];
     const WHOLE: [usize; 8] = [0, 1, 2, 5, 8, 7, 6, 3];
     let nodes: Vec<Vec3<f64>> = places(&finite.mesh, q).iter().map(place).collect();
     let mean = |values: &[f64]| values.iter().sum::<f64>() / values.len() as f64;
@@ -70,6 +72,10 @@ pub(super) fn patches(
         all.push((depth / corners.len() as f64, Patch { corners, value }));
     };
     for (element, stress) in finite.mesh.elements.iter().zip(stresses(finite, q)) {
+        if detail.is_thinned() {
+            add(&CORNERS.map(|local| element.nodes[local]), mean(&stress));
+            continue;
+        }
         if finite.mesh.elements.len() > IN_PARTS {
             add(&WHOLE.map(|local| element.nodes[local]), mean(&stress));
             continue;

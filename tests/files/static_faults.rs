@@ -101,7 +101,7 @@ fn faults_of_shells_are_told_with_their_places() {
             "/structures/plate/supports/edge/nodes",
             json!(3),
             "3",
-            "a name or a list of names",
+            "a text or a list of texts",
         ),
         (
             "/structures/plate/material",

@@ -2,7 +2,7 @@
 function element(kind, text, name) { const e = document.createElement(kind); if (text !== undefined) e.textContent = text; if (name) e.className = name; return e; }
 function table(head, rows) {
   const t = element("table"), first = element("tr"); head.forEach(([text, name]) => first.append(element("th", text, name))); t.append(first);
-  for (const row of rows) { const r = element("tr"); for (const [content, name] of row) { const cell = element("td", undefined, name); content instanceof Node ? cell.append(content) : cell.textContent = content; r.append(cell); } t.append(r); }
+  for (const row of rows) { const r = element("tr"); row.forEach(([content, name], k) => { const cell = element("td", undefined, name); cell.dataset.head = head[k]?.[0] ?? ""; content instanceof Node ? cell.append(content) : cell.textContent = content; r.append(cell); }); t.append(r); }
   const box = element("div", undefined, "scroll"); box.append(t); return box;
 }
 const withUnit = (x, unit) => number(x) + (unit && unit !== "1" ? " " + unit : "");
