@@ -39,6 +39,9 @@ const FOLDERS: [(&str, &str); 4] = [
 /// Pictures of a result, the most telling first.
 const PICTURES: [&str; 3] = ["motion.svg", "thickness.svg", "deformed.svg"];
 
+/// Size of a picture [bytes] from which two instants suffice.
+const LARGE: usize = 600_000;
+
 /// The picture of a problem: of its committed result, or of its start in `docs/gallery`. Path as seen from `docs`.
 fn picture(name: &str) -> Option<String> {
     let results = PICTURES.map(|own| format!("../results/{name}/{own}"));
@@ -51,14 +54,21 @@ fn picture(name: &str) -> Option<String> {
 fn draw(problem: &Path, name: &str) {
     let at = scratch();
     let file = problem.to_str().expect("a path");
-    let ran = optimize(at.path(), &["simulate", file, "--output", "out"]);
-    println!("{name}: exit code {}", ran.code);
-    for picture in PICTURES {
-        if let Ok(bytes) = std::fs::read(at.path().join("out").join(picture)) {
-            let path = root().join("docs/gallery").join(format!("{name}.svg"));
-            std::fs::write(path, bytes).expect("is written");
-            return;
-        }
+    let drawn = |more: &[&str]| -> Option<Vec<u8>> {
+        let ran = optimize(
+            at.path(),
+            &[&["simulate", file, "--output", "out"], more].concat(),
+        );
+        println!("{name}: exit code {}", ran.code);
+        let mut all = PICTURES.iter().map(|own| at.path().join("out").join(own));
+        all.find_map(|path| std::fs::read(path).ok())
+    };
+    // A picture of a thousand bodies is large at every instant.
+    let small = |picture: &Vec<u8>| picture.len() < LARGE;
+    let picture = drawn(&[]).filter(small);
+    if let Some(bytes) = picture.or_else(|| drawn(&["--set", "/drawing/snapshots=2"])) {
+        let path = root().join("docs/gallery").join(format!("{name}.svg"));
+        std::fs::write(path, bytes).expect("is written");
     }
 }
 
