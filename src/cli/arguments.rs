@@ -43,8 +43,8 @@ pub(crate) struct Arguments {
     /// Start and options of the optimisation.
     #[command(flatten)]
     pub course: RunOptions,
-    /// Prints this page.
-    #[arg(short, long, action = ArgAction::HelpShort)]
+    /// Prints help.
+    #[arg(short, long, global = true, action = ArgAction::Help)]
     help: Option<bool>,
 }
 

@@ -110,7 +110,7 @@ pub fn run(arguments: impl Iterator<Item = OsString>) -> ExitCode {
     let mut arguments: Vec<OsString> = arguments.collect();
     // The page of the whole program fits on a screen; the manual has the rest.
     if let [_, only] = &mut arguments[..]
-        && only == "help"
+        && (only == "--help" || only == "help")
     {
         *only = "-h".into();
     }

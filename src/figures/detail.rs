@@ -62,6 +62,9 @@ impl Detail {
     /// The points of both sides at the sections that are shown, of `points` in all: one side, then the other in
     /// opposite order.
     pub(super) fn sides(&self, points: usize) -> Vec<usize> {
+        if !self.is_thinned() {
+            return (0..points).collect();
+        }
         let sections = self.sections(points / 2);
         let back = sections.iter().rev().map(|&k| points - 1 - k);
         sections.iter().copied().chain(back).collect()

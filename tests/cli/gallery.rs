@@ -54,19 +54,21 @@ fn picture(name: &str) -> Option<String> {
 fn draw(problem: &Path, name: &str) {
     let at = scratch();
     let file = problem.to_str().expect("a path");
-    let drawn = |more: &[&str]| -> Option<Vec<u8>> {
-        let ran = optimize(
-            at.path(),
-            &[&["simulate", file, "--output", "out"], more].concat(),
-        );
+    let drawn = |file: &str| -> Option<Vec<u8>> {
+        let ran = optimize(at.path(), &["simulate", file, "--output", "out"]);
         println!("{name}: exit code {}", ran.code);
         let mut all = PICTURES.iter().map(|own| at.path().join("out").join(own));
         all.find_map(|path| std::fs::read(path).ok())
     };
+    let mut picture = drawn(file);
     // A picture of a thousand bodies is large at every instant.
-    let small = |picture: &Vec<u8>| picture.len() < LARGE;
-    let picture = drawn(&[]).filter(small);
-    if let Some(bytes) = picture.or_else(|| drawn(&["--set", "/drawing/snapshots=2"])) {
+    if picture.as_ref().is_some_and(|own| own.len() > LARGE) {
+        let mut document = json(&read(problem));
+        document["plot"]["snapshots"] = 2.into();
+        std::fs::write(at.path().join("two.json"), document.to_string()).expect("is written");
+        picture = drawn("two.json");
+    }
+    if let Some(bytes) = picture {
         let path = root().join("docs/gallery").join(format!("{name}.svg"));
         std::fs::write(path, bytes).expect("is written");
     }

@@ -18,6 +18,8 @@ const SHOWN: f64 = 0.1;
 /// Largest number of load cases and of modes that are drawn.
 const MOST_CASES: usize = 3;
 const MOST_MODES: usize = 4;
+/// Largest number of shells that are drawn in quarters; of more, each has one colour, the largest of its quarters.
+const MOST_IN_QUARTERS: usize = 500;
 
 /// The figures of designs, and the history of an optimisation.
 pub fn figures(
@@ -135,10 +137,17 @@ fn view(
     let mut faces = Vec::with_capacity(4 * mesh.shells.len());
     let mut edges = Vec::new();
     for (index, nodes) in mesh.shells.iter().enumerate() {
-        for (i, j) in [(0, 0), (1, 0), (0, 1), (1, 1)] {
+        let quarters = [(0, 0), (1, 0), (0, 1), (1, 1)].map(|(i, j)| {
             let corner = |di: usize, dj: usize| at(nodes[3 * (j + dj) + i + di]);
             let corners = [corner(0, 0), corner(1, 0), corner(1, 1), corner(0, 1)];
-            faces.push((corners, of_shell(index, i, j)));
+            (corners, of_shell(index, i, j))
+        });
+        if mesh.shells.len() > MOST_IN_QUARTERS {
+            let value = quarters.map(|(_, value)| value).into_iter();
+            let value = value.fold(f64::NEG_INFINITY, larger);
+            faces.push(([0, 2, 8, 6].map(|k| at(nodes[k])), value));
+        } else {
+            faces.extend(quarters);
         }
         edges.push([0, 1, 2, 5, 8, 7, 6, 3, 0].map(|k| at(nodes[k])).to_vec());
     }
