@@ -68,6 +68,7 @@ pub fn page(
         .collect();
     let mut notes = problem.notes_of_input();
     let mut stages = of_structures::stages(problem, &ends.structures);
+    notes.extend(of_structures::left_out(&ends.structures));
     let shown = motions.iter().map(|own| stage(own, &mut notes));
     let (still, moving): (Vec<Option<Stage>>, Vec<Stage>) = shown.unzip();
     stages.extend(moving);
@@ -298,7 +299,7 @@ fn stage(shown: &Shown, notes: &mut Vec<String>) -> (Option<Stage>, Stage) {
         flight: flight.unwrap_or_default(),
         range: coloured.as_ref().map(|own| [0.0, own.largest]),
         label: match &coloured {
-            Some(own) => format!("stress [Pa] {}", own.notes.join(", ")),
+            Some(own) => format!("{} [Pa]", own.notes.join(", ")),
             None => String::new(),
         },
     };

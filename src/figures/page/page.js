@@ -55,7 +55,9 @@ if (scenes.length) {
   if (settings.childNodes.length) main.append(settings);
   const row = element("div", undefined, "scenes"); row.append(...scenes.map(s => s.figure)); main.append(row);
   const names = [...new Set(data.stages.flatMap(s => s.bodies.map(b => b.name)))].filter(n => n), legend = element("div", undefined, "legend");
-  names.slice(0, 30).forEach((n, i) => { const e = element("span", n); e.style.setProperty("--c", COLOURS[i % COLOURS.length]); legend.append(e); }); main.append(legend);
+  names.slice(0, 30).forEach((n, i) => { const e = element("span", n); e.style.setProperty("--c", COLOURS[i % COLOURS.length]); legend.append(e); });
+  if (names.length > 30) legend.append(` and ${names.length - 30} more`);
+  main.append(legend);
   main.append(element("p", "Drag turns, shift and drag moves, the wheel or two fingers zoom; a double click resets the view.", "faint"));
   data.notes.forEach(n => main.append(element("p", n, "faint")));
 }

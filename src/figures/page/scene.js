@@ -115,7 +115,7 @@ class Scene {
       } else if (link.kind === "slider") {
         const d = [b[0] - a[0], b[1] - a[1]], l = Math.hypot(...d) || 1; line([-14, 14].map(s => [a[0] + d[0] / l * s, a[1] + d[1] / l * s])); g.lineWidth = 4; g.stroke();
       } else if (link.kind !== "hinge") { line([a, b]); g.stroke(); }
-      if (link.kind === "hinge") { g.beginPath(); g.arc(...a, 3.5, 0, 7); g.fillStyle = link.grounded ? ink("--ink") : ink("--back"); g.fill(); g.strokeStyle = ink("--ink"); g.stroke(); }
+      if (link.kind === "hinge") { g.beginPath(); g.arc(...a, Math.max(0.7, Math.min(3.5, 140 / stage.links.length)), 0, 7); g.fillStyle = link.grounded ? ink("--ink") : ink("--back"); g.fill(); g.strokeStyle = ink("--ink"); g.stroke(); }
     }
     if (this.forces) {
       g.font = "11px system-ui, sans-serif"; g.textBaseline = "bottom"; g.textAlign = "left";

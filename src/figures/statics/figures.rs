@@ -124,6 +124,11 @@ fn extents(design: &StaticDesign) -> [f64; 3] {
     })
 }
 
+/// Whether shells are drawn in quarters, each in its colour.
+pub(super) fn is_in_quarters(mesh: &Mesh) -> bool {
+    mesh.shells.len() <= MOST_IN_QUARTERS
+}
+
 /// A view of a mesh with its nodes at `places`; `value` gives the colour of the quarter (i, j) of a shell,
 /// or of a beam.
 fn view(
@@ -142,7 +147,7 @@ fn view(
             let corners = [corner(0, 0), corner(1, 0), corner(1, 1), corner(0, 1)];
             (corners, of_shell(index, i, j))
         });
-        if mesh.shells.len() > MOST_IN_QUARTERS {
+        if !is_in_quarters(mesh) {
             let value = quarters.map(|(_, value)| value).into_iter();
             let value = value.fold(f64::NEG_INFINITY, larger);
             faces.push(([0, 2, 8, 6].map(|k| at(nodes[k])), value));

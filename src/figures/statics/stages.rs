@@ -1,6 +1,6 @@
 //! Structures on a page: thickness, shapes under load, modes.
 
-use super::figures::{cameras, deformed, factors, modes, thickness};
+use super::figures::{cameras, deformed, factors, is_in_quarters, modes, thickness};
 use crate::driver::statics::StaticDesign;
 use crate::page::{Body, Shape, Stage, rounded};
 use crate::plots::{Camera, StructureView};
@@ -31,6 +31,13 @@ pub fn stages(problem: &Problem, designs: &[(&str, &StaticDesign)]) -> Vec<Stage
         all.extend(pairs(from, to, true));
     }
     all
+}
+
+/// What the stages of designs leave out.
+pub fn left_out(designs: &[(&str, &StaticDesign)]) -> Option<String> {
+    let coarse = |own: &(&str, &StaticDesign)| !is_in_quarters(own.1.statics.mesh());
+    let note = "Each shell has one colour, the largest of its quarters: there are too many.";
+    designs.iter().any(coarse).then(|| note.to_owned())
 }
 
 /// A view, or two between which it moves.
