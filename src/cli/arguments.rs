@@ -2,7 +2,7 @@
 
 use super::new::Starter;
 use super::range::{Range, range};
-use clap::{ArgAction, Args, Parser, Subcommand};
+use clap::{Args, Parser, Subcommand};
 use std::path::PathBuf;
 
 /// The page of `--help`: the commands that most users need come first.
@@ -25,7 +25,6 @@ Most used:
 #[command(
     name = "optimize",
     version,
-    disable_help_flag = true,
     args_conflicts_with_subcommands = true,
     arg_required_else_help = true,
     help_template = PAGE,
@@ -43,9 +42,6 @@ pub(crate) struct Arguments {
     /// Start and options of the optimisation.
     #[command(flatten)]
     pub course: RunOptions,
-    /// Prints help.
-    #[arg(short, long, global = true, action = ArgAction::Help)]
-    help: Option<bool>,
 }
 
 /// Start and options of an optimisation.

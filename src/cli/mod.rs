@@ -29,8 +29,8 @@ use crate::figures::report_page::page;
 use crate::problem::{Override, Problem, visible, visible_lines};
 use crate::report::{History, Optimum, ReportError, atomic_write, read_text};
 use arguments::{Arguments, Command, Job};
-use clap::Parser;
 use clap::error::ErrorKind;
+use clap::{CommandFactory, FromArgMatches};
 use std::ffi::OsString;
 use std::fs::File;
 use std::io;
@@ -114,7 +114,12 @@ pub fn run(arguments: impl Iterator<Item = OsString>) -> ExitCode {
     {
         *only = "-h".into();
     }
-    let arguments = match Arguments::try_parse_from(arguments) {
+    // Its line on help says "see more with --help" only once the command is built.
+    let mut command = Arguments::command();
+    command.build();
+    let command = command.mut_arg("help", |own| own.help("Prints this page"));
+    let parsed = command.try_get_matches_from(arguments);
+    let arguments = match parsed.and_then(|found| Arguments::from_arg_matches(&found)) {
         Ok(arguments) => arguments,
         Err(message) => {
             // The message contains the user's text.

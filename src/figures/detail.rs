@@ -1,9 +1,13 @@
 //! How much of bodies that deform is shown: all, or fewer sections and faces of large machines.
 
-use super::shells::QUARTERS;
 use crate::model::finite::ElementMesh;
 use crate::problem::Outline;
 
+/// The nodes, or Gauss points, at the corners of the quarters of an element.
+pub(super) const QUARTERS: [[usize; 4]; 4] =
+    [[0, 1, 4, 3], [1, 2, 5, 4], [3, 4, 7, 6], [4, 5, 8, 7]];
+/// The nodes at its corners.
+pub(super) const WHOLE: [usize; 4] = [0, 2, 8, 6];
 /// Numbers of a rigid body at an instant.
 pub(super) const OF_BODY: usize = 9;
 /// Numbers of the two sides of a section at an instant.
@@ -73,7 +77,7 @@ impl Detail {
     /// The corners of the faces of a shell, four or one, among its nodes.
     pub(super) fn corners(&self) -> &'static [[usize; 4]] {
         match self.is_thinned() {
-            true => &[[0, 2, 8, 6]],
+            true => &[WHOLE],
             false => &QUARTERS,
         }
     }

@@ -1,8 +1,8 @@
 //! Shapes of bodies on a page: rigid ones by their poses, those that deform as meshes.
 
-use super::detail::{Detail, OF_BODY, OF_POINTS};
+use super::detail::{Detail, OF_BODY, OF_POINTS, QUARTERS};
 use super::elastic_figures::{between, displaced, elastic, has_stress};
-use super::shells::{self, QUARTERS};
+use super::shells;
 use crate::driver::Simulation;
 use crate::functions::snapshot::Snapshot;
 use crate::math::Vec3;

@@ -1,6 +1,6 @@
 //! Shells in motion: where their nodes are, their stresses, and coloured parts of their surface.
 
-use super::detail::Detail;
+use super::detail::{Detail, QUARTERS, WHOLE};
 use crate::math::Vec3;
 use crate::model::Model;
 use crate::model::finite::{ElementMesh, FiniteElements};
@@ -10,9 +10,6 @@ use crate::system::finite::stress_ratios;
 
 /// Bodies with at most this number of elements are drawn in four parts an element, others in one.
 const IN_PARTS: usize = 40;
-/// The nodes, or Gauss points, at the corners of the quarters of an element.
-pub(super) const QUARTERS: [[usize; 4]; 4] =
-    [[0, 1, 4, 3], [1, 2, 5, 4], [3, 4, 7, 6], [4, 5, 8, 7]];
 
 /// The shells of a body, if it has some.
 pub(super) fn of(model: &Model<f64>, body: usize) -> Option<&FiniteElements<f64>> {
@@ -60,8 +57,7 @@ pub(super) fn patches(
     place: impl Fn(&Vec3<f64>) -> Vec3<f64>,
     (drawing, detail): (&Drawing, &Detail),
 ) -> Vec<Patch> {
-    const CORNERS: [usize; 4] = [0, 2, 8, 6];
-    const WHOLE: [usize; 8] = [0, 1, 2, 5, 8, 7, 6, 3];
+    const OUTLINE: [usize; 8] = [0, 1, 2, 5, 8, 7, 6, 3];
     let nodes: Vec<Vec3<f64>> = places(&finite.mesh, q).iter().map(place).collect();
     let mean = |values: &[f64]| values.iter().sum::<f64>() / values.len() as f64;
     let sight = drawing.sight();
@@ -73,11 +69,11 @@ pub(super) fn patches(
     };
     for (element, stress) in finite.mesh.elements.iter().zip(stresses(finite, q)) {
         if detail.is_thinned() {
-            add(&CORNERS.map(|local| element.nodes[local]), mean(&stress));
+            add(&WHOLE.map(|local| element.nodes[local]), mean(&stress));
             continue;
         }
         if finite.mesh.elements.len() > IN_PARTS {
-            add(&WHOLE.map(|local| element.nodes[local]), mean(&stress));
+            add(&OUTLINE.map(|local| element.nodes[local]), mean(&stress));
             continue;
         }
         for corners in QUARTERS {
