@@ -29,16 +29,14 @@ fn values(problem: &Problem) -> Vec<f64> {
 /// small factor.
 #[test]
 fn ball_joints_close_to_each_other_are_a_hinge() {
-    hinges(&[
-        (3e-6, 1.3, 1e-8, json!({"radau": {"stages": 3}})),
-        (1e-6, 1.1, 1e-9, Value::Null),
-    ]);
+    hinges(&[(1e-6, 1.1, 1e-9, Value::Null)]);
 }
 
 #[test]
 #[ignore = "half a minute"]
 fn more_ball_joints_close_to_each_other_are_a_hinge() {
     hinges(&[
+        (3e-6, 1.3, 1e-8, json!({"radau": {"stages": 3}})),
         (1e-5, 1.0, 1e-9, json!({"radau": {"stages": 3}})),
         (1e-6, 0.7, 1e-9, json!({"radau": {"stages": 3}})),
         (1e-6, 1.6, 1e-7, json!({"radau": {"stages": 2}})),

@@ -138,14 +138,14 @@ fn fast() -> Vec<String> {
     all
 }
 
-/// The first case of every family, and every sixth of the others.
+/// The first case of every family, and a sample of the others.
 #[test]
 fn few_extreme_scenes_of_every_family_are_not_wrong_without_a_word() {
     let mut families = BTreeSet::new();
     let all = fast().into_iter().enumerate();
     let some = all.filter(|(k, case)| {
         let family = case.split('/').next().unwrap_or_default().to_owned();
-        families.insert(family) || k % 6 == 0
+        families.insert(family) || k % 20 == 0
     });
     let some: BTreeSet<String> = some.map(|(_, case)| case).collect();
     assert!(some.len() > 20, "{}", some.len());
