@@ -42,7 +42,7 @@ pub(crate) fn report(directory: &Path) -> Result<u8, Failure> {
             &recorded.problem,
             summary(optimum),
             &recorded.ends(),
-            of_run,
+            (of_run, super::made::made()),
         );
         let page = page.map_err(Failure::numerical)?;
         Ok(vec![(REPORT, page.into_bytes())])

@@ -8,6 +8,7 @@ mod error_table;
 mod explain;
 mod installation;
 mod interrupt;
+mod made;
 mod new;
 mod one_start;
 mod optimise;
@@ -37,7 +38,6 @@ use std::io;
 use std::io::Read;
 use std::path::{Path, PathBuf};
 use std::process::ExitCode;
-use unknown_word::meant;
 
 /// The command succeeded.
 const DONE: u8 = 0;
@@ -115,6 +115,7 @@ pub fn run(arguments: impl Iterator<Item = OsString>) -> ExitCode {
         *only = "-h".into();
     }
     // Its line on help says "see more with --help" only once the command is built.
+    let first = arguments.get(1).cloned().unwrap_or_default();
     let mut command = Arguments::command();
     command.build();
     let command = command.mut_arg("help", |own| own.help("Prints this page"));
@@ -135,6 +136,9 @@ pub fn run(arguments: impl Iterator<Item = OsString>) -> ExitCode {
                 message.kind(),
                 ErrorKind::DisplayHelp | ErrorKind::DisplayVersion
             );
+            if !wanted && let Some(hint) = unknown_word::meant(Path::new(&first)) {
+                tell(&format!("\n  {hint}\n"));
+            }
             return ExitCode::from(if wanted && shown.is_ok() {
                 DONE
             } else {
@@ -251,7 +255,7 @@ fn write_report(
     ends: &Ends,
     of_run: Option<(&Optimum, &History)>,
 ) -> Result<(), Failure> {
-    let text = page(problem, summary, ends, of_run).map_err(Failure::numerical)?;
+    let text = page(problem, summary, ends, (of_run, made::made())).map_err(Failure::numerical)?;
     atomic_write(&directory.join(REPORT), text.as_bytes())?;
     Ok(())
 }
@@ -275,7 +279,10 @@ fn read_with(job: &Job, overrides: &[Override]) -> Result<Problem, Failure> {
                 shown(&job.problem),
                 shown(job.problem.parent().unwrap_or(Path::new(".")))
             )),
-            false => Failure::new(code, format!("{faults}{}", meant(&job.problem))),
+            false => Failure::new(code, match unknown_word::meant(&job.problem) {
+                Some(hint) => format!("{faults}\n  {hint}"),
+                None => faults.to_string(),
+            }),
         }
     })?;
     if job.vtu && problem.statics.is_none() && !problem.has_shells() {

@@ -1,10 +1,10 @@
 //! `optimize new`: a problem file to start from.
 
-use super::{BAD_INPUT, DONE, Failure, shown, tell};
+use super::{BAD_INPUT, DONE, Failure, NO_ACCESS, shown, tell};
 use crate::report::atomic_write;
 use clap::ValueEnum;
 use serde_json::Value;
-use std::path::{Path, PathBuf};
+use std::path::Path;
 
 /// Machines to start from.
 #[derive(Clone, Copy, Debug, ValueEnum)]
@@ -38,15 +38,21 @@ impl Starter {
 
 /// Writes a starter as `path`, with its file name as name of the problem.
 pub(crate) fn new(path: &Path, from: Starter) -> Result<u8, Failure> {
-    let path = match path.extension() {
-        Some(kind) if kind == "json" => path.to_path_buf(),
-        _ => PathBuf::from(format!("{}.json", path.display())),
-    };
     let name = path.file_stem().map(|name| name.to_string_lossy());
-    let Some(name) = name.filter(|name| !name.is_empty()) else {
-        let what = format!("found \"{}\", expected the name of a file", path.display());
+    let is_json = path.extension().is_none_or(|kind| kind == "json");
+    let Some(name) = name.filter(|name| !name.is_empty() && is_json && !path.is_dir()) else {
+        let what = format!(
+            "found \"{}\", expected the name of a file, such as crank or crank.json",
+            shown(path)
+        );
         return Err(Failure::bad_input(what));
     };
+    let path = path.with_extension("json");
+    let folder = path.parent().filter(|own| !own.as_os_str().is_empty());
+    if let Some(folder) = folder.filter(|own| !own.is_dir()) {
+        let what = format!("{} is no folder", shown(folder));
+        return Err(Failure::new(NO_ACCESS, what));
+    }
     if path.exists() {
         let what = format!("{} is there already, and stays as it is", shown(&path));
         return Err(Failure::new(BAD_INPUT, what));
@@ -57,7 +63,10 @@ pub(crate) fn new(path: &Path, from: Starter) -> Result<u8, Failure> {
     let own = format!("\"name\": {}", starter["name"]);
     let named = format!("\"name\": {}", Value::from(name.as_ref()));
     atomic_write(&path, text.replacen(&own, &named, 1).as_bytes())?;
-    let file = shown(&path);
+    let file = match shown(&path) {
+        file if file.contains(' ') => format!("'{file}'"),
+        file => file,
+    };
     tell(&format!(
         "{file} is written; next:\n  optimize simulate {file}\n  optimize {file} --report\n"
     ));

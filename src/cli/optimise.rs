@@ -151,7 +151,17 @@ pub(crate) fn optimise(job: &Job, course: &RunOptions) -> Result<u8, Failure> {
     }
     // Figures of an earlier run belong to its record, which stays if no new one was written.
     if recorded {
-        draw(&directory, figures::of_optimisation(&problem, &done));
+        let drawn = figures::of_optimisation(&problem, &done);
+        let stale = figures::NAMES
+            .iter()
+            .filter(|name| !drawn.iter().any(|(own, _)| own == *name));
+        for name in stale {
+            let _ = std::fs::remove_file(directory.join(name));
+        }
+        draw(&directory, drawn);
+    }
+    if recorded && !(job.report || course.watch) {
+        let _ = std::fs::remove_file(directory.join(REPORT));
     }
     if recorded && (job.report || course.watch) {
         let ends = Ends::of_optimisation(&done);

@@ -16,7 +16,7 @@ use crate::functions::evaluate::ungated_maximum;
 use crate::functions::peak::Maximum;
 use crate::integrate::IntegrationFailure;
 use crate::problem::Problem;
-use crate::report::{prepare_directory, write_all};
+use crate::report::{prepare_directory, with_space, write_all};
 use serde_json::{Map, Value, json};
 use std::fmt::Write;
 use std::path::Path;
@@ -261,11 +261,12 @@ fn summary(problem: &Problem, simulation: &Simulation) -> String {
         .unwrap_or(0);
     for (f, name) in problem.function_names.iter().enumerate() {
         let found = simulation.at.function(f);
-        let _ = write!(text, "  {name:width$}  {:>16.9e}", found.value);
+        let unit = with_space(Some(&problem.function_unit(f)));
+        let _ = write!(text, "  {name:width$}  {:>16.9e}{unit}", found.value);
         if let Some(Maximum { value, time, error }) = found.maximum {
             let _ = write!(
                 text,
-                "  true maximum {value:.9e} at t = {time:.6} s (± {error:.0e}"
+                "  true maximum {value:.9e}{unit} at t = {time:.6} s (± {error:.0e}"
             );
             let at = &simulation.at;
             match ungated_maximum(&at.scene.functions[f], &at.scene.model, &at.run) {

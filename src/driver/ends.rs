@@ -4,6 +4,7 @@ use super::analysed::Simulated;
 use super::optimise::Optimisation;
 use super::simulate::Simulation;
 use super::statics::StaticDesign;
+use crate::optimiser::Status;
 
 /// Designs with their titles, such as `optimal design`: those in motion, and structures at rest.
 #[derive(Default)]
@@ -13,10 +14,15 @@ pub struct Ends<'a> {
 }
 
 impl<'a> Ends<'a> {
-    /// The start and the end of an optimisation, as far as they could be simulated.
-    pub fn new(start: Option<&'a Simulated>, end: Option<&'a Simulated>) -> Self {
+    /// The start and the end of an optimisation, as far as they could be simulated; the end is an optimum if the
+    /// optimisation `converged`.
+    pub fn new(start: Option<&'a Simulated>, end: Option<&'a Simulated>, converged: bool) -> Self {
+        let last = match converged {
+            true => "optimal design",
+            false => "last design",
+        };
         let mut all = Self::default();
-        for (title, end) in [("initial design", start), ("optimal design", end)] {
+        for (title, end) in [("initial design", start), (last, end)] {
             match end {
                 Some(Simulated::Motion(own)) => all.motions.push((title, own)),
                 Some(Simulated::Statics(own)) => all.structures.push((title, own)),
@@ -28,7 +34,8 @@ impl<'a> Ends<'a> {
 
     /// The ends of an optimisation.
     pub fn of_optimisation(done: &'a Optimisation) -> Self {
-        Self::new(done.start.as_ref(), done.end.as_ref())
+        let converged = done.outcome.status == Status::Converged;
+        Self::new(done.start.as_ref(), done.end.as_ref(), converged)
     }
 
     /// A motion alone.

@@ -318,8 +318,8 @@ fn beyond_margin(problem: &Problem, name: &str, found: &ConstraintValue) -> Opti
     let above = found.upper.map(|upper| (upper - found.value, upper));
     let all = below.into_iter().chain(above);
     let (margin, bound) = all.min_by(|a, b| a.0.total_cmp(&b.0))?;
-    let margin = margin.max(0.0);
-    if error <= margin + (tolerance * bound.abs().max(1.0)).max(NOTABLE * bound.abs()) {
+    let allowed = tolerance * bound.abs().max(1.0);
+    if -margin <= allowed && error <= margin.max(0.0) + allowed.max(NOTABLE * bound.abs()) {
         return None;
     }
     let unit = match found.unit.as_deref() {
@@ -330,14 +330,18 @@ fn beyond_margin(problem: &Problem, name: &str, found: &ConstraintValue) -> Opti
         Some(_) => "a finer mesh",
         None => "a smaller tolerance or more steps",
     };
-    let text = format!(
-        "\"{name}\" may be violated: its estimated error of {error:.1e}{unit} exceeds its distance of \
-         {margin:.1e}{unit} from the bound; take {finer}"
-    );
+    let text = match -margin > allowed {
+        true => format!("\"{name}\" is violated by {:.2e}{unit}", -margin),
+        false => format!(
+            "\"{name}\" may be violated: its estimated error of {error:.1e}{unit} exceeds its distance of \
+             {:.1e}{unit} from the bound; take {finer}",
+            margin.max(0.0)
+        ),
+    };
     let name = name.to_owned();
     Some(Message {
         name,
-        size: error,
+        size: error.max(-margin),
         text,
     })
 }

@@ -27,6 +27,7 @@ pub struct Recorded {
     pub problem: Problem,
     start: Option<Simulated>,
     end: Option<Simulated>,
+    converged: bool,
 }
 
 impl Recorded {
@@ -77,11 +78,12 @@ impl Recorded {
             problem,
             start,
             end,
+            converged: optimum.status == "converged",
         })
     }
 
     /// Both designs, as far as they could be simulated.
     pub fn ends(&self) -> Ends<'_> {
-        Ends::new(self.start.as_ref(), self.end.as_ref())
+        Ends::new(self.start.as_ref(), self.end.as_ref(), self.converged)
     }
 }

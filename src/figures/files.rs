@@ -26,6 +26,19 @@ use crate::report::History;
 /// sections and shells by their corners.
 const MOST_NUMBERS: usize = 40_000;
 
+/// The names of all figures.
+pub const NAMES: [&str; 9] = [
+    "convergence.svg",
+    "motion.svg",
+    "energy.svg",
+    "deflection.svg",
+    "trace.svg",
+    "stress.svg",
+    "thickness.svg",
+    "deformed.svg",
+    "modes.svg",
+];
+
 /// A file's name and content.
 pub type NamedFile = (&'static str, Vec<u8>);
 

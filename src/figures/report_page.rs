@@ -17,7 +17,7 @@ use crate::functions::snapshot::Snapshot;
 use crate::functions::turning::turns;
 use crate::math::Vec3;
 use crate::page;
-use crate::page::{Body, Chart, Curve, Link, Stage, convergence, rounded};
+use crate::page::{Body, Chart, Curve, Link, Stage, Value, convergence, rounded};
 use crate::plots::{ConnectorKind, History as Curves};
 use crate::problem::{Drawing, Outline, Problem};
 use crate::report::{History, Optimum};
@@ -53,7 +53,7 @@ impl<'a> Shown<'a> {
     }
 }
 
-/// The page of designs, and of the optimisation that led to the last.
+/// The page of designs, and of the optimisation that led to the last; `made` says by what and when it is made.
 ///
 /// # Errors
 /// If a number of the record is not finite.
@@ -61,7 +61,7 @@ pub fn page(
     problem: &Problem,
     summary: String,
     ends: &Ends,
-    of_run: Option<(&Optimum, &History)>,
+    (of_run, made): (Option<(&Optimum, &History)>, String),
 ) -> Result<String, serde_json::Error> {
     let motions: Vec<Shown> = (ends.motions.iter())
         .map(|(title, simulation)| Shown::new(problem, title, simulation))
@@ -83,7 +83,13 @@ pub fn page(
         stages,
         charts,
         optimum: of_run.map(|(optimum, _)| optimum),
+        functions: match of_run {
+            Some(_) => Vec::new(),
+            None => functions(problem, ends),
+        },
+        document: of_run.is_none().then_some(&problem.document),
         notes,
+        made,
         goes_on: false,
         version: env!("CARGO_PKG_VERSION"),
     })
@@ -98,14 +104,40 @@ pub fn so_far(problem: &Problem, history: &History) -> Result<String, serde_json
     page::html(&page::Page {
         name: &problem.name,
         description: problem.document["description"].as_str().unwrap_or(""),
-        summary: format!("iteration {iteration}; the optimisation goes on"),
+        summary: format!("Running: iteration {iteration}."),
         stages: Vec::new(),
         charts: convergence(history),
         optimum: None,
+        functions: Vec::new(),
+        document: None,
         notes: Vec::new(),
+        made: String::new(),
         goes_on: true,
         version: env!("CARGO_PKG_VERSION"),
     })
+}
+
+/// The functions of a design.
+fn functions(problem: &Problem, ends: &Ends) -> Vec<Value> {
+    let of = |f: usize| -> Option<(f64, Option<f64>)> {
+        if let Some((_, own)) = ends.motions.first() {
+            let found = own.at.function(f);
+            return Some((found.value, found.maximum.map(|own| own.value)));
+        }
+        let found = ends.structures.first()?.1.function(f);
+        Some((found.value, found.peak.map(|peak| peak.ratio)))
+    };
+    let all = problem.function_names.iter().enumerate();
+    all.filter_map(|(f, name)| {
+        let (value, true_maximum) = of(f)?;
+        Some(Value {
+            name: name.clone(),
+            value,
+            unit: problem.function_unit(f),
+            true_maximum,
+        })
+    })
+    .collect()
 }
 
 /// Gives all stages whose colours mean the same one scale, so that designs can be compared.

@@ -164,10 +164,18 @@ pub(super) fn without_inertia(problem: &Problem) -> Option<Finding> {
 /// The fault of a scene that cannot start.
 fn cannot_assemble(failure: &AssemblyFailure) -> Finding {
     let (pointer, expected, hint) = match failure {
-        AssemblyFailure::Open { joint, .. } => (
+        AssemblyFailure::Open {
+            joint, iterations, ..
+        } => (
             join("/joints", joint),
             "points that the placed bodies can bring together",
-            "look at the lengths, and at where the bodies are placed",
+            match iterations {
+                0 => {
+                    "no small motion brings the points nearer: if the lengths fit, the bodies lie in line; give one of them a \
+                     \"turn\" that bends the loop to one side"
+                }
+                _ => "look at the lengths, and at where the bodies are placed",
+            },
         ),
         AssemblyFailure::Determined { joint } => (
             join("/joints", joint),

@@ -96,7 +96,7 @@ fn gallery() -> String {
                 .any(|key| document.get(key).is_some());
             let command = match is_design {
                 true => format!("optimize {folder}/{file}"),
-                false => format!("optimize simulate {folder}/{file} --output {name}"),
+                false => format!("optimize simulate {folder}/{file} --output results/{name}"),
             };
             match picture(name) {
                 Some(picture) => {

@@ -34,13 +34,35 @@ pub struct Page<'a> {
     /// The record of an optimum.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub optimum: Option<&'a Optimum>,
+    /// The functions of a simulation.
+    #[serde(skip_serializing_if = "Vec::is_empty")]
+    pub functions: Vec<Value>,
+    /// The problem of a simulation.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub document: Option<&'a serde_json::Value>,
     /// What the page leaves out.
     pub notes: Vec<String>,
+    /// By what and when it was made.
+    pub made: String,
     /// Whether the run goes on, so that the browser reads the file again every two seconds.
     #[serde(skip)]
     pub goes_on: bool,
     /// The version of the program.
     pub version: &'static str,
+}
+
+/// A function of a simulation.
+#[derive(Clone, Debug, Serialize)]
+pub struct Value {
+    /// Its name.
+    pub name: String,
+    /// Its value.
+    pub value: f64,
+    /// Its unit.
+    pub unit: String,
+    /// The largest value of what it aggregates, if it is an aggregate.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub true_maximum: Option<f64>,
 }
 
 /// Curves over one axis.
@@ -166,7 +188,10 @@ pub fn convergence(history: &History) -> Vec<Chart> {
             true,
             vec![
                 Curve::new("optimality", positive(along(&|row| row.optimality))),
-                Curve::new("infeasibility", positive(along(&|row| row.infeasibility))),
+                Curve::new(
+                    "infeasibility, where it is not zero",
+                    positive(along(&|row| row.infeasibility)),
+                ),
             ],
         ),
     ];

@@ -2,7 +2,13 @@
 const data = JSON.parse(document.getElementById("data").textContent), main = document.getElementById("page");
 main.replaceChildren(element("h1", data.name)); if (data.description) main.append(element("p", data.description, "faint"));
 const [verdict, change, ...tables] = data.optimum ? optimumTables(data.optimum) : []; if (verdict) main.append(verdict, change);
+if (data.optimum?.status === "converged") main.append(element("p", "A local optimum: the best in the valley of the start. --starts 4 seeks better ones from other starts.", "faint"));
+if (!data.optimum && !data.stages.length) main.append(element("p", `${data.summary} The page is read again every two seconds; this state is of ${document.lastModified}.`));
 const scenes = data.stages.map((stage, i) => new Scene(stage, i)), charts = data.charts.map((chart, i) => new LineChart(chart, i));
+// The limits of constraints over the iterations.
+for (const { chart } of charts) if (chart.title === "Constraints") for (const { name } of chart.curves) {
+  const c = data.optimum?.constraints[name] ?? {}; for (const limit of new Set([c.lower, c.upper])) if (limit !== undefined && !chart.limits.some(l => l[1] === limit)) chart.limits.push([name, limit]);
+}
 // Designs beside each other have one scale: the box of all that mean the same, with or without flights.
 function frame(box) {
   for (const s of scenes) {
@@ -54,11 +60,13 @@ if (scenes.length) {
   }
   if (settings.childNodes.length) main.append(settings);
   const row = element("div", undefined, "scenes"); row.append(...scenes.map(s => s.figure)); main.append(row);
-  const names = [...new Set(data.stages.flatMap(s => s.bodies.map(b => b.name)))].filter(n => n), legend = element("div", undefined, "legend");
-  names.slice(0, 30).forEach((n, i) => { const e = element("span", n); e.style.setProperty("--c", COLOURS[i % COLOURS.length]); legend.append(e); });
+  // Bodies in their own colours; those in the colours of stress have a scale.
+  const plain = s => s.bodies.filter(b => !(s.range && b.shape.values?.length)).map(b => b.name), names = [...new Set(data.stages.flatMap(s => s.bodies.map(b => b.name)))].filter(n => n && data.stages.some(s => plain(s).includes(n))), legend = element("div", undefined, "legend");
+  const index = n => data.stages[0].bodies.findIndex(b => b.name === n);
+  names.slice(0, 30).forEach(n => { const e = element("span", n); e.style.setProperty("--c", COLOURS[Math.max(0, index(n)) % COLOURS.length]); legend.append(e); });
   if (names.length > 30) legend.append(` and ${names.length - 30} more`);
   main.append(legend);
-  main.append(element("p", "Drag turns, shift and drag moves, the wheel or two fingers zoom; a double click resets the view.", "faint"));
+  main.append(element("p", "Drag turns, shift and drag moves, the wheel or two fingers zoom, a double click resets the view; keys: arrows turn, + and − zoom, 0 resets, the space bar plays. #t=0.4 in the address opens at 0.4 s.", "faint"));
   data.notes.forEach(n => main.append(element("p", n, "faint")));
 }
 for (const s of scenes) {
@@ -80,13 +88,15 @@ for (const s of scenes) {
   });
 }
 main.append(...tables);
+if (data.functions?.length) main.append(element("h2", "Functions"), functionTable(data.functions));
 if (charts.length) { main.append(element("h2", "Curves")); const row = element("div", undefined, "row"); row.append(...charts.map(c => c.figure)); main.append(row); }
 if (data.optimum) {
   const file = element("details"); file.append(element("summary", "The problem as it was solved, with everything that was set on the command line"), element("pre", JSON.stringify(data.optimum.problem.document, null, 1)));
   main.append(element("h2", "Record"), recordTables(data.optimum), file);
 }
-if (data.summary) { const pre = element("pre", data.summary); main.append(element("h2", "As the terminal shows it"), pre); }
-main.append(element("p", `flexbody ${data.version}`, "faint"));
+if (data.document) { const file = element("details"); file.append(element("summary", "The problem as it was simulated"), element("pre", JSON.stringify(data.document, null, 1))); main.append(element("h2", "Problem"), file); }
+if (data.summary && (data.optimum || data.stages.length)) { const pre = element("pre", data.summary); main.append(element("h2", "As the terminal shows it"), pre); }
+main.append(element("p", `flexbody ${data.version}${data.made ? "; made by " + data.made : ""}`, "faint"));
 // `#t=0.4` shows an instant [s].
 const asked = /[#&]t=([-+.0-9e]+)/i.exec(location.hash); if (!real) player.share = 1;
 if (asked && longest > 0) player.share = Math.min(1, Math.max(0, +asked[1] / longest));

@@ -129,6 +129,7 @@ class Scene {
     }
     if (stage.range) {
       const [w, h] = [Math.min(150, width / 3), 9], x = width - w - 12;
+      g.globalAlpha = 0.8; g.fillStyle = ink("--panel"); g.fillRect(x - 6, 4, w + 14, 34); g.globalAlpha = 1;
       SCALE.forEach((_, i) => { g.fillStyle = tint(i, [0, SCALE.length - 1]); g.fillRect(x + w * i / SCALE.length, 10, w / SCALE.length + 1, h); });
       g.fillStyle = ink("--faint"); g.font = "11px system-ui, sans-serif"; g.textBaseline = "top"; g.textAlign = "left"; g.fillText(number(stage.range[0]), x, 22); g.textAlign = "right"; g.fillText(number(stage.range[1]), x + w, 22);
     }

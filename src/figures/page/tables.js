@@ -14,7 +14,7 @@ function bar(v) {
 function optimumTables(o) {
   const all = [], sense = o.objective.sense === "maximise" ? "Maximised" : "Minimised", unit = o.objective.unit;
   const verdict = element("p", `${o.message[0].toUpperCase()}${o.message.slice(1)}.`, o.status === "converged" ? "good" : "bad"); verdict.id = "verdict"; all.push(verdict);
-  const change = o.start_objective ? ` (${(100 * (o.objective.value / o.start_objective - 1) * Math.sign(o.start_objective)).toFixed(1)} %)` : "";
+  const percent = 100 * (o.objective.value / o.start_objective - 1) * Math.sign(o.start_objective), change = o.start_objective ? ` (${percent > 0 ? "+" : ""}${percent.toFixed(1)} %)` : "";
   all.push(element("p", `${sense} ${o.objective.function}: ${o.start_objective === undefined ? "not known at the start" : number(o.start_objective)} → ${withUnit(o.objective.value, unit)}${change}` + (o.objective.estimated_error ? `, accurate to about ${withUnit(o.objective.estimated_error, unit)}.` : ".")));
   // What moving an active limit by about one per cent of it does, so that the first order holds; `slope` is d objective / d limit.
   const words = (slope, which, limit, ofLimit) => {
@@ -36,18 +36,31 @@ function optimumTables(o) {
       const side = c.active.includes("upper") ? "upper" : "lower", both = c.lower !== undefined && c.upper !== undefined && c.lower !== c.upper;
       return words(c.multiplier, both ? side + " limit" : "limit", c[side], c.unit);
     };
-    const margin = c => [c.lower === undefined ? Infinity : c.value - c.lower, c.upper === undefined ? Infinity : c.upper - c.value].reduce((a, b) => Math.min(a, b));
-    const where = c => c.aggregate ? [c.aggregate.place, c.aggregate.time === undefined ? "" : `t = ${number(c.aggregate.time)} s`].filter(x => x).join(", ") + `, true extreme ${number(c.aggregate.true_maximum)}` : "";
-    all.push(element("h2", "Constraints"), table([["constraint"], ["value", "number"], ["limits"], ["margin", "number"], ["worst at"], ["what it costs"]], constraints.slice(0, 200).map(([name, c]) => [[name], [withUnit(c.value, c.unit), "number"],
-      [[c.lower === undefined ? "" : "≥ " + number(c.lower), c.upper === undefined ? "" : "≤ " + number(c.upper)].filter(x => x).join(", ")], [c.active === "inactive" ? number(margin(c)) : "active", "number"], [where(c), "wide"], [cost(c), "wide"]])));
+    const sides = (c, x) => [[c.lower, x - c.lower], [c.upper, c.upper - x]].filter(([limit]) => limit !== undefined);
+    const closest = (c, x) => sides(c, x).reduce((a, b) => b[1] < a[1] ? b : a, [0, Infinity]);
+    const margin = c => {
+      const [limit, room] = closest(c, c.value), text = withUnit(Math.abs(room), c.unit);
+      return room < -1e-6 * Math.max(1, Math.abs(limit)) ? element("span", `violated by ${text}`, "bad") : c.active === "inactive" ? text : "active";
+    };
+    // Where the largest value is, and what an aggregate stands for, which may lie beyond a limit that the aggregate keeps.
+    const where = c => {
+      const a = c.aggregate, truth = a ? a.true_maximum : c.true_value, all = element("span", a ? [a.place, a.time === undefined ? "" : `t = ${number(a.time)} s`, ""].filter((x, i) => x || i === 2).join(", ") : "");
+      if (truth === undefined) return all; const [, room] = closest(c, truth), beyond = room < -Math.max(a?.error ?? 0, 1e-9 * Math.abs(truth));
+      all.append(`true value ${withUnit(truth, c.unit)}`); if (beyond) all.append(element("span", ` beyond the limit by ${withUnit(-room, c.unit)}`, "bad")); return all;
+    };
+    all.push(element("h2", "Constraints"), table([["constraint"], ["value", "number"], ["limits"], ["margin", "number"], ["est. error", "number"], ["worst at"], ["what it costs"]], constraints.slice(0, 200).map(([name, c]) => [[name], [withUnit(c.value, c.unit), "number"],
+      [[c.lower === undefined ? "" : "≥ " + withUnit(c.lower, c.unit), c.upper === undefined ? "" : "≤ " + withUnit(c.upper, c.unit)].filter(x => x).join(", ")], [margin(c), "number"], [c.estimated_error === undefined ? "" : c.estimated_error.toExponential(1), "number"], [where(c), "wide"], [cost(c), "wide"]])));
     if (constraints.length > 200) all.push(element("p", `200 of ${constraints.length} constraints are shown.`, "faint"));
   }
   if (o.warnings?.length) { all.push(element("h2", "Warnings")); o.warnings.forEach(w => all.push(element("p", w, "bad"))); }
   return all;
 }
+function functionTable(functions) {
+  return table([["function"], ["value", "number"], ["true extreme", "number"]], functions.slice(0, 200).map(f => [[f.name], [withUnit(f.value, f.unit), "number"], [f.true_maximum === undefined ? "" : withUnit(f.true_maximum, f.unit), "number"]]));
+}
 function recordTables(o) {
   const k = o.kkt.scaled, c = o.gradient_certificate, rows = [["stationarity: how far the gradient is from being balanced by multipliers", number(k.stationarity)], ["feasibility: how far a constraint is violated", number(k.feasibility)], ["complementarity: multipliers of constraints that are not active", number(k.complementarity)],
-    ["certificate: gradients beside the complex step", c === undefined ? "not made" : c.passed ? "they agree" : "they differ"], ...Object.entries(o.counts).filter(([, n]) => n).map(([name, n]) => [name.replaceAll("_", " "), String(n)]), ...(o.integration ? [["method", `${o.integration.method}, ${o.integration.steps} steps (${o.integration.reason})`]] : []),
+    ["certificate: largest difference of a gradient from the complex step, of itself", c === undefined ? "not made" : [c.start, c.optimum].map((own, i) => number(Math.max(0, ...Object.values(own.functions).map(f => f.difference ?? 0))) + [" at the start", " at the end"][i]).join(", ") + (c.passed ? "" : ": they differ")], ...Object.entries(o.counts).filter(([, n]) => n).map(([name, n]) => [name.replaceAll("_", " "), String(n)]), ...(o.integration ? [["method", `${o.integration.method}, ${o.integration.steps} steps (${o.integration.reason})`]] : []),
     ["problem file", `${o.problem.file}${o.problem.sha256 ? ", SHA-256 " + o.problem.sha256 : ""}`], ["version", o.version]];
   return table([["accuracy, work and origin"], [""]], rows.map(([a, b]) => [[a, "wide"], [b, "wide"]]));
 }
