@@ -28,7 +28,7 @@ impl Starter {
         match self {
             Self::Pendulum => include_str!("starters/pendulum.json"),
             Self::Linkage => include_str!("starters/linkage.json"),
-            Self::Trebuchet => include_str!("../../problems/trebuchet.json"),
+            Self::Trebuchet => include_str!("starters/trebuchet.json"),
             Self::Arm => include_str!("starters/arm.json"),
             Self::Plate => include_str!("starters/plate.json"),
             Self::Frame => include_str!("starters/frame.json"),

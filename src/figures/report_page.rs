@@ -293,6 +293,10 @@ fn stage(shown: &Shown, notes: &mut Vec<String>) -> (Option<Stage>, Stage) {
             ConnectorKind::Spring => "spring",
             ConnectorKind::Arm { .. } => "arm",
         },
+        body: match own.kind {
+            ConnectorKind::Arm { body } => bodies().position(|shown| shown == body),
+            _ => None,
+        },
         grounded: own.to_ground,
         ends: (own.ends.iter())
             .map(|[a, b]| [a.x, a.y, a.z, b.x, b.y, b.z].map(rounded))
@@ -310,7 +314,14 @@ fn stage(shown: &Shown, notes: &mut Vec<String>) -> (Option<Stage>, Stage) {
         ));
     }
     let coloured = colours(model, drawing, std::slice::from_ref(stresses));
-    let flight = release(simulation, drawing, *objective)
+    let release = release(simulation, drawing, *objective);
+    if let Some(own) = release.as_ref().filter(|own| own.sample < run.last()) {
+        notes.push(format!(
+            "The {of}: the projectile is let go at t = {:.4} s. Its flight begins there; the machine is shown as if it kept it.",
+            run.time(own.sample)
+        ));
+    }
+    let flight = release
         .zip(drawing.ground)
         .and_then(|(own, ground)| own.flight.path(ground))
         .map(|path| path.into_iter().map(|p| p.map(rounded)).collect());

@@ -187,6 +187,19 @@ pub struct ConstraintValue {
     pub true_value: Option<f64>,
 }
 
+impl ConstraintValue {
+    /// How far the value is beyond its bounds, if that is more than a millionth of the bound (of one, near zero).
+    pub fn violation(&self) -> Option<f64> {
+        let below = self.lower.map(|lower| (lower - self.value, lower));
+        let above = self.upper.map(|upper| (self.value - upper, upper));
+        let all = below.into_iter().chain(above);
+        let (by, _) = all
+            .filter(|(by, bound)| *by > 1e-6 * bound.abs().max(1.0))
+            .max_by(|a, b| a.0.total_cmp(&b.0))?;
+        Some(by)
+    }
+}
+
 /// A smooth aggregate and the largest value over time, or over a structure.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]

@@ -194,6 +194,7 @@ fn constraints(optimum: &Optimum) -> String {
                 unit(&constraint.unit),
                 interval(constraint.lower, constraint.upper),
                 match constraint.active {
+                    _ if constraint.violation().is_some() => "violated",
                     Activity::Inactive => "inactive",
                     Activity::Lower => "at its lower bound",
                     Activity::Upper => "at its upper bound",

@@ -62,6 +62,12 @@ fn a_word_that_is_no_file_has_a_hint() {
         let ran = expect(2, at.path(), &[word]);
         assert!(ran.err.contains(hint), "{}", ran.err);
     }
+    let ran = expect(2, at.path(), &["simulat", "crane.json"]);
+    let hint = "did you mean the command `optimize simulate`?";
+    assert!(ran.err.contains(hint), "{}", ran.err);
+    expect(0, at.path(), &[HAMMER, "--output", "out"]);
+    let ran = expect(2, at.path(), &["out"]);
+    assert!(ran.err.contains("`optimize report out`"), "{}", ran.err);
     let ran = expect(2, at.path(), &["nothing/like/it.json"]);
     assert!(!ran.err.contains("did you mean"), "{}", ran.err);
 }

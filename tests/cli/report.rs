@@ -273,6 +273,82 @@ fn a_throw_shows_its_flight() {
     assert!(pictures[0] != pictures[1]);
 }
 
+/// A run removes what it does not write: a page or a figure beside another record would be wrong.
+#[test]
+fn nothing_of_an_earlier_run_stays() {
+    let at = scratch();
+    expect(0, at.path(), &[HAMMER, "--output", "out", "--report"]);
+    std::fs::write(at.path().join("out/thickness.svg"), "of a plate").expect("written");
+    std::fs::write(at.path().join("out/notes.txt"), "of the user").expect("written");
+    expect(0, at.path(), &[HAMMER, "--output", "out"]);
+    let exists = |name: &str| at.path().join("out").join(name).exists();
+    assert!(!exists("report.html") && !exists("thickness.svg"));
+    assert!(exists("notes.txt") && exists("motion.svg"));
+}
+
+/// A design that violates a constraint is no optimum, and says so in the table, as a warning and on the page.
+#[test]
+fn a_violated_constraint_is_shown() {
+    let at = scratch();
+    let limit = "/constraints/strong/upper=35";
+    expect(0, at.path(), &["new", "arm", "--from", "arm"]);
+    let arguments = ["arm.json", "--output", "out", "--report", "--set", limit];
+    let few = ["--set", "/bodies/arm/beam/modes={\"bending_y\":1}"];
+    let ran = expect(1, at.path(), &[&arguments[..], &few].concat());
+    let row = ran.out.lines().find(|line| line.starts_with("  strong "));
+    assert!(
+        row.is_some_and(|row| row.contains("violated")),
+        "{}",
+        ran.out
+    );
+    assert!(ran.out.contains("\"strong\" is violated by"), "{}", ran.out);
+    let page = at.path().join("out/report.html");
+    let stages = data(&read(&page))["stages"].clone();
+    assert_eq!(stages[1]["title"], "last design");
+    let Some(browser) = browser() else { return };
+    let (dom, said) = opened(browser, &page, "", &["--dump-dom"]);
+    assert_eq!(said, "");
+    assert!(
+        dom.contains("violated by"),
+        "{}",
+        &dom[..dom.len().min(3000)]
+    );
+}
+
+/// The page of a simulation has its functions and the problem, and fits the width of a phone.
+#[test]
+fn a_simulation_has_its_functions_and_fits_a_phone() {
+    let Some(browser) = browser() else { return };
+    let at = scratch();
+    expect(
+        0,
+        at.path(),
+        &["simulate", TREBUCHET, "--output", "out", "--report"],
+    );
+    let page = at.path().join("out/report.html");
+    let act =
+        "document.body.dataset.over = document.documentElement.scrollWidth - window.innerWidth;";
+    let text = read(&page).replace("</body>", &format!("<script>{act}</script></body>"));
+    std::fs::write(&page, text).expect("written");
+    let (dom, said) = opened(browser, &page, "", &["--dump-dom", "--window-size=500,900"]);
+    assert_eq!(said, "");
+    for part in [
+        "562.13",
+        "clearance",
+        "The problem as it was simulated",
+        "made by optimize simulate",
+    ] {
+        assert!(dom.contains(part), "{part}");
+    }
+    let (_, over) = dom.split_once("data-over=\"").expect("a width");
+    let over: f64 = over
+        .split('"')
+        .next()
+        .and_then(|x| x.parse().ok())
+        .expect("a number");
+    assert!(over <= 0.0, "{over} pixels too wide");
+}
+
 /// The page of an optimisation is not replaced by that of a simulation.
 #[test]
 fn a_simulation_leaves_the_page_of_an_optimisation() {

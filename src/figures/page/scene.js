@@ -108,7 +108,7 @@ class Scene {
     parts.sort((a, b) => a[0] - b[0]).forEach(part => part[1]());
     for (const link of stage.links) {
       const e = mix(link.ends[k0], link.ends[k1], f), a = flat(e.slice(0, 3)), b = flat(e.slice(3));
-      g.lineWidth = 1.5; g.strokeStyle = link.kind === "rod" ? "#a0521d" : link.kind === "spring" ? "#b0298a" : ink("--faint");
+      g.lineWidth = 1.5; g.strokeStyle = link.kind === "rod" ? "#a0521d" : link.kind === "spring" ? "#b0298a" : link.body !== undefined ? COLOURS[link.body % COLOURS.length] : ink("--faint");
       if (link.kind === "spring") {
         const n = 12, d = [b[0] - a[0], b[1] - a[1]], l = Math.hypot(...d) || 1, w = [-d[1] / l * 5, d[0] / l * 5];
         line(Array.from({ length: n + 1 }, (_, i) => { const s = i === 0 || i === n ? 0 : i % 2 ? 1 : -1; return [a[0] + d[0] * i / n + w[0] * s, a[1] + d[1] * i / n + w[1] * s]; })); g.stroke();

@@ -111,6 +111,9 @@ pub struct Arrow {
 pub struct Link {
     /// `hinge`, `slider`, `rod`, `spring` or `arm`.
     pub kind: &'static str,
+    /// The number of the body whose arm it is.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub body: Option<usize>,
     /// Whether it joins a body to ground.
     pub grounded: bool,
     /// Its two points at each instant \[m\]; the second of a slider is a point of its line.
