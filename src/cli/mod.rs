@@ -30,12 +30,12 @@ use crate::figures::report_page::page;
 use crate::problem::{Override, Problem, visible, visible_lines};
 use crate::report::{History, Optimum, ReportError, atomic_write, read_text};
 use arguments::{Arguments, Command, Job};
+use clap::Parser;
 use clap::error::ErrorKind;
-use clap::{CommandFactory, FromArgMatches};
 use std::ffi::OsString;
 use std::fs::File;
 use std::io;
-use std::io::Read;
+use std::io::{IsTerminal, Read};
 use std::path::{Path, PathBuf};
 use std::process::ExitCode;
 
@@ -114,18 +114,22 @@ pub fn run(arguments: impl Iterator<Item = OsString>) -> ExitCode {
     {
         *only = "-h".into();
     }
-    // Its line on help says "see more with --help" only once the command is built.
     let first = arguments.get(1).cloned().unwrap_or_default();
-    let mut command = Arguments::command();
-    command.build();
-    let command = command.mut_arg("help", |own| own.help("Prints this page"));
-    let parsed = command.try_get_matches_from(arguments);
-    let arguments = match parsed.and_then(|found| Arguments::from_arg_matches(&found)) {
+    let arguments = match Arguments::try_parse_from(arguments) {
         Ok(arguments) => arguments,
         Err(message) => {
             // The message contains the user's text.
             let rendered = message.render();
             let shown = match visible_lines(&rendered.to_string()) == rendered.to_string() {
+                // The page of the whole program is the same by both options.
+                true if message.kind() == ErrorKind::DisplayHelp && first == "-h" => {
+                    let text = match io::stdout().is_terminal() {
+                        true => rendered.ansi().to_string(),
+                        false => rendered.to_string(),
+                    };
+                    let text = text.replace(" (see more with '--help')", "");
+                    io::Write::write_all(&mut io::stdout(), text.as_bytes())
+                }
                 true => message.print(),
                 false => {
                     tell(&rendered.to_string());
