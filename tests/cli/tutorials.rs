@@ -88,7 +88,7 @@ fn the_mechanism_leads_to_its_numbers() {
 
 #[test]
 fn the_arm_leads_to_its_numbers() {
-    assert_eq!(followed(&tutorial("arm.md")), (5, 20));
+    assert_eq!(followed(&tutorial("arm.md")), (5, 22));
 }
 
 #[test]
