@@ -351,7 +351,20 @@ fn refine(job: &Job, problem: Problem) -> Result<Problem, Failure> {
 /// Reads a record from its file or its directory; also returns the path of the file.
 fn record(path: &Path) -> Result<(PathBuf, Optimum), Failure> {
     let path = if path.is_dir() {
-        path.join("optimum.json")
+        let found = path.join("optimum.json");
+        if !found.exists() {
+            let stopped = path.join("evaluations.jsonl").exists();
+            let shown = shown(path);
+            return Err(Failure::bad_input(match stopped {
+                true => format!(
+                    "{shown}: found a run without an end, expected an optimum.json; --resume {shown} goes on with it"
+                ),
+                false => format!(
+                    "{shown}: found no optimum.json, expected the result of an optimisation"
+                ),
+            }));
+        }
+        found
     } else {
         path.to_path_buf()
     };

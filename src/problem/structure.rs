@@ -90,9 +90,14 @@ impl<'a> Walker<'a> {
 
     fn wrong(&mut self, value: &Value, schema: &'a Value, pointer: &str) {
         let expected = self.wanted(schema);
-        let hint = value
-            .is_null()
-            .then(|| "leave the key out if it is not wanted".to_owned());
+        let hint = match value {
+            Value::Null => Some("leave the key out if it is not wanted".to_owned()),
+            Value::Array(items) if expected == "a text" => match &items[..] {
+                [Value::String(only)] => Some(format!("write \"{only}\" without brackets")),
+                _ => Some("give each its own entry".to_owned()),
+            },
+            _ => None,
+        };
         self.fault(Finding::new(pointer, describe(value), expected).hint(hint));
     }
 

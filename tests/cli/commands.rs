@@ -68,6 +68,13 @@ fn a_word_that_is_no_file_has_a_hint() {
     expect(0, at.path(), &[HAMMER, "--output", "out"]);
     let ran = expect(2, at.path(), &["out"]);
     assert!(ran.err.contains("`optimize report out`"), "{}", ran.err);
+    std::fs::remove_file(at.path().join("out/optimum.json")).expect("removed");
+    let ran = expect(2, at.path(), &["report", "out"]);
+    assert!(
+        ran.err.contains("--resume out goes on with it"),
+        "{}",
+        ran.err
+    );
     let ran = expect(2, at.path(), &["nothing/like/it.json"]);
     assert!(!ran.err.contains("did you mean"), "{}", ran.err);
 }

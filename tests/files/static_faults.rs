@@ -104,6 +104,12 @@ fn faults_of_shells_are_told_with_their_places() {
             "a text or a list of texts",
         ),
         (
+            "/load_cases/push/p/pressure/faces",
+            json!(["all"]),
+            "a list of 1",
+            "write \"all\" without brackets",
+        ),
+        (
             "/structures/plate/material",
             json!("metall"),
             "\"metall\"",
