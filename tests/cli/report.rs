@@ -365,6 +365,39 @@ fn a_simulation_leaves_the_page_of_an_optimisation() {
     assert!(read(&page) == before);
 }
 
+/// The resultants of a plate under pressure: the load is pressure times area, the supports balance it.
+#[test]
+fn resultants_of_a_structure_are_in_balance() {
+    let at = scratch();
+    expect(
+        0,
+        at.path(),
+        &["simulate", PLATE, "--output", "out", "--report"],
+    );
+    let shown = data(&read(&at.path().join("out/report.html")));
+    let stages = shown["stages"].as_array().expect("stages").iter();
+    let mut with = stages.filter(|stage| !stage["arrows"].as_array().expect("arrows").is_empty());
+    let arrows = with.next().expect("a load case")["arrows"].clone();
+    let arrows = arrows.as_array().expect("arrows");
+    assert_eq!(arrows.len(), 1 + 4);
+    let mut sum = [0.0; 3];
+    for arrow in arrows {
+        let [none, full] = [0, 1].map(|k| numbers(&arrow["forces"][k]));
+        assert_eq!(none[3..], [0.0; 3]);
+        (0..3).for_each(|k| sum[k] += full[3 + k]);
+    }
+    let pressure = numbers(&arrows[0]["forces"][1]);
+    let problem: Value = serde_json::from_str(&read(Path::new(PLATE))).expect("JSON");
+    let plate = &problem["structures"]["plate"]["mesh"]["plate"];
+    let side = |key: &str| plate[key].as_f64().expect("a number");
+    let expected = 1e5 * side("length") * side("width");
+    assert!(
+        (pressure[5].abs() / expected - 1.0).abs() < 1e-5,
+        "{pressure:?}"
+    );
+    assert!(sum.iter().all(|f| f.abs() < 1e-5 * expected), "{sum:?}");
+}
+
 /// While a run goes on its page is read again by itself and shows the convergence; at the end it is the report.
 #[test]
 fn a_run_can_be_watched() {

@@ -44,7 +44,7 @@ if (scenes.length) {
   }
   const settings = element("div", undefined, "controls"), drawn = scenes.filter(s => s.stage.arrows.length), coloured = scenes.filter(s => s.stage.range && s.stage.label !== "h [mm]");
   if (drawn.length) {
-    const most = Math.max(...drawn.flatMap(s => s.stage.arrows.flatMap(a => a.forces.map(e => Math.hypot(...e.slice(3)))))) || 1, box = element("input"), label = element("label", " forces of joints (blue) and loads (red)");
+    const most = Math.max(...drawn.flatMap(s => s.stage.arrows.flatMap(a => a.forces.map(e => Math.hypot(...e.slice(3)))))) || 1, box = element("input"), label = element("label", real ? " forces of joints (blue) and loads (red)" : " resultants of supports (blue) and loads (red)");
     box.type = "checkbox"; box.id = "forces"; label.prepend(box); box.onchange = () => { for (const s of drawn) { s.forces = box.checked; s.most = most; } show(); }; settings.append(label);
   }
   if (scenes.some(s => s.stage.flight.length)) {

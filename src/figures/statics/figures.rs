@@ -255,6 +255,13 @@ fn on_one_scale(mut rows: Vec<Vec<StructureView>>) -> Vec<Vec<StructureView>> {
     rows
 }
 
+/// The load cases that are drawn: the first that were solved.
+pub(super) fn drawn_cases(design: &StaticDesign) -> impl Iterator<Item = usize> + '_ {
+    let all = design.solutions.iter().enumerate();
+    let solved = all.filter(|(_, x)| !x.is_empty());
+    solved.map(|(case, _)| case).take(MOST_CASES)
+}
+
 /// The deformed shape of the first load cases with a part of the displacements, in colours of stress: von Mises of shells, largest along fibres of
 /// beams.
 pub(super) fn deformed(
@@ -264,12 +271,7 @@ pub(super) fn deformed(
     share: f64,
 ) -> Vec<StructureView> {
     let mesh = &design.scene.structure.topology.mesh;
-    let solved = design
-        .solutions
-        .iter()
-        .enumerate()
-        .filter(|(_, x)| !x.is_empty());
-    let cases = solved.map(|(case, _)| case).take(MOST_CASES);
+    let cases = drawn_cases(design);
     let one = |case: usize| {
         let OfCase {
             motion,

@@ -1,10 +1,11 @@
 //! Structures on a page: thickness, shapes under load, modes.
 
-use super::figures::{cameras, deformed, factors, is_in_quarters, modes, thickness};
+use super::figures::{cameras, deformed, drawn_cases, factors, is_in_quarters, modes, thickness};
 use crate::driver::statics::StaticDesign;
-use crate::page::{Body, Shape, Stage, rounded};
+use crate::page::{Arrow, Body, Shape, Stage, rounded};
 use crate::plots::{Camera, StructureView};
 use crate::problem::Problem;
+use crate::structures::resultants::Resultant;
 
 /// The stages of designs.
 pub fn stages(problem: &Problem, designs: &[(&str, &StaticDesign)]) -> Vec<Stage> {
@@ -24,13 +25,52 @@ pub fn stages(problem: &Problem, designs: &[(&str, &StaticDesign)]) -> Vec<Stage
     for (title, design) in each() {
         let both = [0.0, 1.0].map(|share| deformed(title, design, &factors, share));
         let [from, to] = both;
-        all.extend(pairs(from, to, false));
+        let mut shown = pairs(from, to, false);
+        for (stage, case) in shown.iter_mut().zip(drawn_cases(design)) {
+            stage.arrows = arrows(problem, design, case).unwrap_or_default();
+        }
+        all.extend(shown);
     }
     if let Some((_, design)) = designs.last() {
         let [from, to] = [0.0, 1.0].map(|share| modes(design, share));
         all.extend(pairs(from, to, true));
     }
     all
+}
+
+/// The resultants of loads and of supports in a load case, which grow with the load; none of too many.
+fn arrows(problem: &Problem, design: &StaticDesign, case: usize) -> Option<Vec<Arrow>> {
+    const MOST: usize = 24;
+    let sets = design.statics.supports.iter();
+    let sets: Vec<&str> = sets.map(|own| own.nodes.as_str()).collect();
+    let name = &design.statics.cases[case];
+    let loads = problem.document["load_cases"][name].as_object()?;
+    if sets.len() + loads.len() > MOST {
+        return None;
+    }
+    let found = design.with_solved(|solved| {
+        let loads = solved.of_loads(case).ok()?;
+        Some((loads, solved.of_supports(case, &sets).ok()?))
+    });
+    let (of_loads, of_supports) = found??;
+    let arrow = |name: &str, applied: bool, own: Resultant| {
+        let ends = |share: f64| {
+            let (p, f) = (own.point, share * own.force);
+            [p.x, p.y, p.z, f.x, f.y, f.z].map(rounded)
+        };
+        Arrow {
+            name: name.to_owned(),
+            applied,
+            forces: vec![ends(0.0), ends(1.0)],
+        }
+    };
+    let applied = loads.keys().zip(of_loads);
+    let held = sets.iter().zip(of_supports);
+    let all = applied.map(|(name, own)| arrow(name, true, own));
+    Some(
+        all.chain(held.map(|(set, own)| arrow(set, false, own)))
+            .collect(),
+    )
 }
 
 /// What the stages of designs leave out.

@@ -135,7 +135,7 @@ impl<S: Scalar> Solved<'_, S> {
         self.problem.assembly.configuration(self.structure)
     }
 
-    fn state(&self, case: usize) -> State<'_, S> {
+    pub(super) fn state(&self, case: usize) -> State<'_, S> {
         State {
             x: &self.solutions[case],
             case: &self.cases[case],

@@ -121,7 +121,7 @@ impl Reaction<'_> {
 }
 
 /// Internal and external forces of a state, at all nodes.
-fn forces<S: Scalar>(
+pub(super) fn forces<S: Scalar>(
     configuration: &Configuration<S>,
     state: &State<S>,
 ) -> Result<(NodalMotion<S>, NodalMotion<S>), UnknownSet> {
