@@ -2,6 +2,7 @@
 
 use crate::functions::Scene;
 use crate::math::{Dual, Scalar};
+use std::collections::HashMap;
 
 /// A quantity is round-off up to this fraction of its scale.
 pub(super) const ROUND_OFF: f64 = 1e-13;
@@ -60,6 +61,8 @@ pub(super) struct ConditionChecker {
     /// Typical change of the variable. It multiplies infinitesimal parts.
     change: f64,
     found: Vec<ViolatedCondition>,
+    /// The places in `found` by description: a large scene violates thousands.
+    places: HashMap<String, usize>,
 }
 
 impl ConditionChecker {
@@ -67,6 +70,7 @@ impl ConditionChecker {
         Self {
             change,
             found: Vec::new(),
+            places: HashMap::new(),
         }
     }
 
@@ -130,9 +134,15 @@ impl ConditionChecker {
 
     /// Adds a violation. Of several with one description only the largest is kept.
     fn add(&mut self, obstacle: ViolatedCondition) {
-        match self.found.iter_mut().find(|own| own.what == obstacle.what) {
-            Some(own) => own.size = own.size.max(obstacle.size),
-            None => self.found.push(obstacle),
+        match self.places.get(&obstacle.what) {
+            Some(&place) => {
+                let own = &mut self.found[place];
+                own.size = own.size.max(obstacle.size);
+            }
+            None => {
+                self.places.insert(obstacle.what.clone(), self.found.len());
+                self.found.push(obstacle);
+            }
         }
     }
 }
