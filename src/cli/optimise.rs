@@ -160,10 +160,11 @@ pub(crate) fn optimise(job: &Job, course: &RunOptions) -> Result<u8, Failure> {
         }
         draw(&directory, drawn);
     }
-    if recorded && !(job.report || course.watch) {
+    let has_page = recorded && (job.report || course.watch);
+    if recorded && !has_page {
         let _ = std::fs::remove_file(directory.join(REPORT));
     }
-    if recorded && (job.report || course.watch) {
+    if has_page {
         let ends = Ends::of_optimisation(&done);
         let of_run = Some((&done.optimum, &done.history));
         write_report(&directory, &problem, summary(&done.optimum), &ends, of_run)?;
@@ -183,7 +184,7 @@ pub(crate) fn optimise(job: &Job, course: &RunOptions) -> Result<u8, Failure> {
     }
     if !job.quiet {
         tell(&format!("results in {}\n", shown(&directory)));
-        if recorded && (job.report || course.watch) {
+        if has_page {
             tell(&format!("page: {}\n", shown(&directory.join(REPORT))));
         }
     }

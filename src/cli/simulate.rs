@@ -105,9 +105,8 @@ pub(crate) fn simulate(
 
 /// Refuses files that nothing says where to write.
 pub(super) fn expect_directory(job: &Job) -> Result<(), Failure> {
-    let of_optimum = |directory: &&std::path::PathBuf| directory.join("optimum.json").is_file();
-    if let Some(directory) = job.output.as_ref().filter(of_optimum)
-        && job.report
+    if let (true, Some(directory)) = (job.report, &job.output)
+        && directory.join("optimum.json").is_file()
     {
         return Err(Failure::bad_input(format!(
             "{0}: found the result of an optimisation, expected another directory for the page of a simulation; \

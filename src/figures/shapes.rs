@@ -60,7 +60,7 @@ pub(super) fn shape(
             let count = sections.len();
             let sides = detail.sides(line.points.len()).into_iter();
             let points: Vec<_> = sides.map(|k| &line.points[k]).collect();
-            let last = 2 * count - 1;
+            let last = points.len().saturating_sub(1);
             let slice = |k: usize| vec![k, k + 1, last - k - 1, last - k];
             let faces = (0..count.saturating_sub(1)).map(slice).collect();
             let elastic_of = |k: &usize| elastic(model, &at(k), body);

@@ -2,7 +2,7 @@
 
 use crate::program::{HAMMER, TREBUCHET, changed, expect, read, scratch, start};
 use serde_json::Value;
-use std::path::Path;
+use std::path::{Path, PathBuf};
 use std::process::Command;
 use std::time::{Duration, Instant};
 
@@ -24,6 +24,13 @@ fn data(page: &str) -> Value {
         .expect("the element with the data");
     let (text, _) = rest.split_once("</script>").expect("its end");
     serde_json::from_str(text).expect("JSON")
+}
+
+/// Simulates a problem into `out` with its page; gives the page's file.
+fn simulated(at: &Path, problem: &str) -> PathBuf {
+    let arguments = ["simulate", problem, "--output", "out", "--report"];
+    expect(0, at, &arguments);
+    at.join("out/report.html")
 }
 
 /// Nothing is loaded: no element names another file or address.
@@ -112,12 +119,7 @@ fn numbers(list: &Value) -> Vec<f64> {
 #[test]
 fn a_body_of_few_shapes_is_stored_by_its_basis() {
     let at = scratch();
-    expect(
-        0,
-        at.path(),
-        &["simulate", FLEXIBLE, "--output", "out", "--report"],
-    );
-    let page = read(&at.path().join("out/report.html"));
+    let page = read(&simulated(at.path(), FLEXIBLE));
     let shown = data(&page);
     let bodies = shown["stages"][0]["bodies"].as_array().expect("bodies");
     let body = (bodies.iter().map(|body| &body["shape"])).find(|shape| shape["kind"] == "modal");
@@ -160,12 +162,7 @@ fn a_body_of_few_shapes_is_stored_by_its_basis() {
 fn structures_and_bodies_that_deform_are_meshes() {
     let at = scratch();
     for (problem, frames) in [(PLATE, 2), (SHELLS, 12)] {
-        expect(
-            0,
-            at.path(),
-            &["simulate", problem, "--output", "out", "--report"],
-        );
-        let page = read(&at.path().join("out/report.html"));
+        let page = read(&simulated(at.path(), problem));
         assert!(page.len() < 3_000_000, "{problem}: {}", page.len());
         let shown = data(&page);
         let stages = shown["stages"].as_array().expect("stages");
@@ -198,12 +195,7 @@ fn structures_and_bodies_that_deform_are_meshes() {
 #[test]
 fn forces_are_the_reactions_of_the_table() {
     let at = scratch();
-    expect(
-        0,
-        at.path(),
-        &["simulate", HAMMER, "--output", "out", "--report"],
-    );
-    let shown = data(&read(&at.path().join("out/report.html")));
+    let shown = data(&read(&simulated(at.path(), HAMMER)));
     let stage = &shown["stages"][0];
     let table = read(&at.path().join("out/simulation.csv"));
     let mut lines = table
@@ -244,12 +236,7 @@ fn forces_are_the_reactions_of_the_table() {
 #[test]
 fn a_throw_shows_its_flight() {
     let at = scratch();
-    expect(
-        0,
-        at.path(),
-        &["simulate", TREBUCHET, "--output", "out", "--report"],
-    );
-    let page = at.path().join("out/report.html");
+    let page = simulated(at.path(), TREBUCHET);
     let text = read(&page);
     let shown = data(&text);
     let stage = &shown["stages"][0];
@@ -260,16 +247,8 @@ fn a_throw_shows_its_flight() {
     // The largest range of the start, at one of the samples: 562.13 m.
     assert!((last[0] - 562.13).abs() < 0.5, "{last:?}");
     let Some(browser) = browser() else { return };
-    let mut pictures = Vec::new();
-    for act in ["", "document.getElementById('flight').click()"] {
-        let act = format!("<script>{act}</script></body>");
-        std::fs::write(&page, text.replace("</body>", &act)).expect("written");
-        let path = at.path().join("picture.png");
-        let shot = format!("--screenshot={}", path.display());
-        let (_, said) = opened(browser, &page, "#t=0.5", &[&shot, "--window-size=1100,900"]);
-        assert_eq!(said, "");
-        pictures.push(std::fs::read(&path).expect("a picture"));
-    }
+    let acts = ["", "document.getElementById('flight').click()"];
+    let pictures = acts.map(|act| acted(browser, &page, "#t=0.5", act));
     assert!(pictures[0] != pictures[1]);
 }
 
@@ -320,12 +299,7 @@ fn a_violated_constraint_is_shown() {
 fn a_simulation_has_its_functions_and_fits_a_phone() {
     let Some(browser) = browser() else { return };
     let at = scratch();
-    expect(
-        0,
-        at.path(),
-        &["simulate", TREBUCHET, "--output", "out", "--report"],
-    );
-    let page = at.path().join("out/report.html");
+    let page = simulated(at.path(), TREBUCHET);
     let act =
         "document.body.dataset.over = document.documentElement.scrollWidth - window.innerWidth;";
     let text = read(&page).replace("</body>", &format!("<script>{act}</script></body>"));
@@ -369,12 +343,7 @@ fn a_simulation_leaves_the_page_of_an_optimisation() {
 #[test]
 fn resultants_of_a_structure_are_in_balance() {
     let at = scratch();
-    expect(
-        0,
-        at.path(),
-        &["simulate", PLATE, "--output", "out", "--report"],
-    );
-    let shown = data(&read(&at.path().join("out/report.html")));
+    let shown = data(&read(&simulated(at.path(), PLATE)));
     let stages = shown["stages"].as_array().expect("stages").iter();
     let mut with = stages.filter(|stage| !stage["arrows"].as_array().expect("arrows").is_empty());
     let arrows = with.next().expect("a load case")["arrows"].clone();
@@ -472,6 +441,18 @@ fn opened(browser: &str, page: &Path, at: &str, more: &[&str]) -> (String, Strin
     (text(&ran.stdout), said.collect())
 }
 
+/// The picture of a page after a program of the test has acted on it.
+fn acted(browser: &str, page: &Path, at: &str, act: &str) -> Vec<u8> {
+    let folder = tempfile::tempdir().expect("a directory");
+    let [own, picture] = ["acted.html", "picture.png"].map(|name| folder.path().join(name));
+    let act = format!("<script>{act}</script></body>");
+    std::fs::write(&own, read(page).replace("</body>", &act)).expect("written");
+    let shot = format!("--screenshot={}", picture.display());
+    let (_, said) = opened(browser, &own, at, &[&shot, "--window-size=1100,900"]);
+    assert_eq!(said, "");
+    std::fs::read(&picture).expect("a picture")
+}
+
 /// In a browser: no complaint, the program of the page runs to its end, tables and alternative texts are there, an instant
 /// of the address shows another picture, and so do a dark scheme and the width of a phone.
 #[test]
@@ -545,24 +526,11 @@ fn a_browser_shows_the_machine_at_an_instant() {
 fn a_browser_takes_limits_of_colours() {
     let Some(browser) = browser() else { return };
     let at = scratch();
-    expect(
-        0,
-        at.path(),
-        &["simulate", PLATE, "--output", "out", "--report"],
-    );
-    let page = at.path().join("out/report.html");
-    let text = read(&page);
-    let mut pictures = Vec::new();
-    for value in ["", "1e8"] {
-        let act = format!(
-            "<script>const own = document.getElementById('colour1'); own.value = '{value}'; own.onchange();</script></body>"
-        );
-        std::fs::write(&page, text.replace("</body>", &act)).expect("written");
-        let path = at.path().join("a.png");
-        let shot = format!("--screenshot={}", path.display());
-        let (_, said) = opened(browser, &page, "", &[&shot, "--window-size=1100,900"]);
-        assert_eq!(said, "");
-        pictures.push(std::fs::read(&path).expect("a picture"));
-    }
+    let page = simulated(at.path(), PLATE);
+    let pictures = ["", "1e8"].map(|value| {
+        let field = "const own = document.getElementById('colour1');";
+        let act = format!("{field} own.value = '{value}'; own.onchange();");
+        acted(browser, &page, "", &act)
+    });
     assert!(pictures[0] != pictures[1]);
 }
