@@ -30,15 +30,15 @@ const SWING: &str = r#"{
 const ANGLE: f64 = -1.25;
 
 /// Minimise (φ − ANGLE)² + 0.01 m² of the swept angle φ and the mass m.
-struct Own<'a> {
-    analysis: Analysis<'a>,
+struct Own {
+    analysis: Analysis,
     start: Vec<f64>,
     /// The design of the last evaluation, so that its gradients need no second simulation.
-    last: Option<(Vec<f64>, Design<'a>)>,
+    last: Option<(Vec<f64>, Design)>,
 }
 
-impl<'a> Own<'a> {
-    fn at(&mut self, x: &[f64]) -> Result<&Design<'a>, EvaluationFailure> {
+impl Own {
+    fn at(&mut self, x: &[f64]) -> Result<&Design, EvaluationFailure> {
         if self.last.as_ref().is_none_or(|(of, _)| of != x) {
             let failed = |error: flexbody::SimulationError| EvaluationFailure {
                 what: "the swing".into(),
@@ -51,7 +51,7 @@ impl<'a> Own<'a> {
     }
 }
 
-impl Nlp for Own<'_> {
+impl Nlp for Own {
     fn variables(&self) -> usize {
         2
     }

@@ -62,7 +62,7 @@ mod library;
 use flexbody_driver as driver;
 use flexbody_figures as figures;
 use flexbody_mathematics::math;
-use flexbody_mechanics::{functions, integrate};
+use flexbody_mechanics::{adjoint, functions, integrate, model, system};
 use flexbody_problem as problem;
 use flexbody_report as report;
 
@@ -70,7 +70,9 @@ pub use flexbody_mechanics::structures;
 pub use flexbody_optimiser as optimiser;
 
 pub use library::{
-    Analysis, BodyState, CheckedDerivative, Design, Iteration, Motion, Optimum, SimulationError,
-    check, optimise, simulate,
+    Analysis, BodyState, CaseAtRest, CheckedDerivative, Cotangents, Design, ElasticStates,
+    Energies, Interrupt, Iteration, Mode, Motion, OptimisationError, OptimisationOptions, Optimum,
+    PageError, Reactions, Rest, SimulationError, check, modes, optimise, optimise_with,
+    page_of_design, rest, simulate, start_states, unresolved,
 };
-pub use problem::{Fault, Faults, Override, OverrideError, Problem, Variable};
+pub use problem::{Fault, Faults, Override, OverrideError, Problem, Sense, Variable};

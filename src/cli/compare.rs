@@ -2,10 +2,12 @@
 
 use super::arguments::Comparison;
 use super::earlier::state_in;
-use super::{DONE, Failure, NOT_REACHED, REPORT, print, record, shown, tell};
+use super::{DONE, Failure, NOT_REACHED, command, print, record, shown, tell};
 use crate::driver::recorded::Recorded;
 use crate::figures;
 use crate::figures::report_page::page;
+use crate::library::made::made;
+use crate::library::written::REPORT;
 use crate::report::{
     History, Optimum, Tolerances, prepare_directory, read_text, summary, write_all,
 };
@@ -42,7 +44,7 @@ pub(crate) fn report(directory: &Path) -> Result<u8, Failure> {
             &recorded.problem,
             summary(optimum),
             &recorded.ends(),
-            (of_run, super::made::made()),
+            (of_run, made(&command())),
         );
         let page = page.map_err(Failure::numerical)?;
         Ok(vec![(REPORT, page.into_bytes())])

@@ -2,11 +2,9 @@
 
 use super::{Failure, record, shown};
 use crate::driver::WarmStart;
+use crate::library::written::STATE;
 use crate::problem::Problem;
 use std::path::Path;
-
-/// The state of the optimiser, for a warm start.
-pub(super) const STATE: &str = "state.json";
 
 /// The state of the optimiser in a result directory, if it is there and can be read.
 pub(super) fn state_in(directory: &Path) -> Option<WarmStart> {

@@ -8,14 +8,12 @@ mod error_table;
 mod explain;
 mod installation;
 mod interrupt;
-mod made;
 mod new;
 mod one_start;
 mod optimise;
 mod parameters;
 mod progress;
 mod range;
-mod records;
 mod simulate;
 mod stability;
 mod starts;
@@ -26,9 +24,9 @@ mod work_precision;
 use crate::driver::accuracy;
 use crate::driver::ends::Ends;
 use crate::figures;
-use crate::figures::report_page::page;
+use crate::library::written::{self, PageError};
 use crate::problem::{Override, Problem, visible, visible_lines};
-use crate::report::{History, Optimum, ReportError, atomic_write, read_text};
+use crate::report::{History, Optimum, ReportError, read_text};
 use arguments::{Arguments, Command, Job};
 use clap::Parser;
 use clap::error::ErrorKind;
@@ -51,9 +49,6 @@ const NUMERICAL_FAILURE: u8 = 3;
 const NO_ACCESS: u8 = 4;
 /// Interrupted by a signal.
 const INTERRUPTED: u8 = 130;
-
-/// The page of a result.
-const REPORT: &str = "report.html";
 
 /// Why a command failed: exit code and message.
 struct Failure {
@@ -223,15 +218,14 @@ fn print(text: &str) -> Result<(), Failure> {
     }
 }
 
-/// Writes figures. If one cannot be written, a warning follows, and the figure of an earlier run is
-/// removed.
+/// Writes figures. If one cannot be written, a warning follows.
 fn draw(directory: &Path, figures: Vec<figures::NamedFile>) {
-    for (name, bytes) in figures {
-        let path = directory.join(name);
-        if let Err(error) = atomic_write(&path, &bytes) {
-            let _ = std::fs::remove_file(&path);
-            tell(&format!("warning: a figure is missing: {error}\n"));
-        }
+    warn_of_missing(&written::draw(directory, figures));
+}
+
+fn warn_of_missing(figures: &[ReportError]) {
+    for error in figures {
+        tell(&format!("warning: a figure is missing: {error}\n"));
     }
 }
 
@@ -259,9 +253,18 @@ fn write_report(
     ends: &Ends,
     of_run: Option<(&Optimum, &History)>,
 ) -> Result<(), Failure> {
-    let text = page(problem, summary, ends, (of_run, made::made())).map_err(Failure::numerical)?;
-    atomic_write(&directory.join(REPORT), text.as_bytes())?;
-    Ok(())
+    let written = written::write_page(directory, problem, (summary, &command()), ends, of_run);
+    written.map_err(|error| match error {
+        PageError::NotFinite(error) => Failure::numerical(error),
+        PageError::File(error) => error.into(),
+    })
+}
+
+/// The words of the command line.
+fn command() -> String {
+    let words = std::env::args_os().skip(1);
+    let words: Vec<String> = words.map(|word| word.to_string_lossy().into()).collect();
+    format!("optimize {}", words.join(" "))
 }
 
 fn overrides(job: &Job) -> Result<Vec<Override>, Failure> {

@@ -1,10 +1,11 @@
 //! `optimize PROBLEM` from one start: progress, history and page while it runs.
 
 use super::progress::show;
-use super::records::{Records, Start, changed};
-use super::{Failure, REPORT, tell};
+use super::{Failure, tell};
 use crate::driver::{self, Optimisation, WarmStart};
 use crate::figures::report_page::so_far;
+use crate::library::logs::{Logs, Start, changed};
+use crate::library::written::{PARTIAL, REPORT};
 use crate::problem::Problem;
 use crate::report::{History, HistoryLog, ReportError, atomic_write};
 use std::cell::RefCell;
@@ -13,8 +14,6 @@ use std::path::Path;
 use std::sync::Mutex;
 use std::time::{Duration, Instant};
 
-/// The history during the run. The other results are still those of an earlier run.
-pub(super) const PARTIAL: &str = "history.partial.csv";
 /// Shortest time between two pages of a run that goes on.
 const SHORTEST_WATCH: Duration = Duration::from_secs(1);
 
@@ -24,7 +23,7 @@ pub(super) fn one(
     problem: &Problem,
     (file, directory): (&str, &Path),
     state: Option<&WarmStart>,
-    records: &Records,
+    records: &Logs,
     stopped: &dyn Fn() -> bool,
     (quiet, watch): (bool, bool),
 ) -> Result<(Optimisation, Option<ReportError>), Failure> {
@@ -62,7 +61,7 @@ pub(super) fn one(
             ControlFlow::Continue(())
         }
     };
-    let known = opened.known_evaluations(&fault, quiet);
+    let known = opened.known_evaluations(&fault, (!quiet).then_some(tell));
     let state = state.map(|warm| &warm.state);
     let done = driver::optimise(problem, file, state, known, &mut progress);
     let lost = unwritable

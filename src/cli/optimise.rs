@@ -1,32 +1,28 @@
 //! `optimize PROBLEM`: the default job.
 
 use super::arguments::{Job, RunOptions};
-use super::earlier::{STATE, start_from};
-use super::one_start::{PARTIAL, one};
+use super::earlier::start_from;
+use super::one_start::one;
 use super::parameters::{Parameter, add_sensitivities, parameter, sweep};
-use super::records::{Records, Start, refuse_without_run};
 use super::starts::{several, spread};
 use super::{
-    DONE, Failure, INTERRUPTED, NOT_REACHED, NUMERICAL_FAILURE, REPORT, draw, interrupt, print,
-    read, refine, shown, tell, write_report,
+    DONE, Failure, INTERRUPTED, NOT_REACHED, NUMERICAL_FAILURE, interrupt, print, read, refine,
+    shown, tell, warn_of_missing, write_report,
 };
 use crate::driver::ends::Ends;
 use crate::driver::{self, Optimisation, WarmStart, certificate};
 use crate::figures;
+use crate::library::logs::{Logs, Start, without_run};
+use crate::library::written::{OPTIMUM, REPORT, draw_optimisation, write};
 use crate::optimiser::{Counts, Status};
 use crate::problem::Problem;
 use crate::report::optimum::Curvature;
 use crate::report::{
     ReportError, atomic_write, path_between, prepare_directory, summary, write_all,
 };
-use std::path::{Path, PathBuf};
+use std::path::Path;
 use std::sync::Mutex;
 use std::time::Instant;
-
-/// The record of the optimum.
-const OPTIMUM: &str = "optimum.json";
-/// The distinct optima of several starts.
-const OPTIMA: &str = "optima.csv";
 
 /// Optimises a problem and writes its results.
 pub(crate) fn optimise(job: &Job, course: &RunOptions) -> Result<u8, Failure> {
@@ -57,12 +53,14 @@ pub(crate) fn optimise(job: &Job, course: &RunOptions) -> Result<u8, Failure> {
         (None, None) => Path::new("results").join(&problem.name),
     };
     let resume = course.resume.as_deref();
-    if let Some(from) = resume {
-        refuse_without_run(from, course.starts.is_some())?;
+    if let Some(from) = resume
+        && let Some(why) = without_run(from, course.starts.is_some())?
+    {
+        return Err(Failure::bad_input(why));
     }
     let _held = prepare_directory(&directory)?;
     let (problem, state, starts) = begin(refine(job, problem)?)?;
-    let records = Records::new(&directory, resume)?;
+    let records = Logs::new(Some(&directory), resume)?;
     if course.watch && !job.quiet {
         tell(&format!(
             "open {} in a browser to watch the run\n",
@@ -118,7 +116,7 @@ pub(crate) fn optimise(job: &Job, course: &RunOptions) -> Result<u8, Failure> {
     let of_one_start = matches!(start, Start::Only) && done.outcome.status == Status::Converged;
     let state = WarmStart::of(&problem, &done.outcome, &done.integration);
     add_sensitivities(&mut done, &parameters);
-    let (recorded, refused) = write(&done, state, optima, &directory);
+    let (recorded, refused) = write(&done, state, optima.as_deref(), &directory);
     let mut unwritten = lost.or(refused);
     // The results are on the disk now: later failures lose nothing.
     let checked = match (course.second_order, &unwritten) {
@@ -151,14 +149,7 @@ pub(crate) fn optimise(job: &Job, course: &RunOptions) -> Result<u8, Failure> {
     }
     // Figures of an earlier run belong to its record, which stays if no new one was written.
     if recorded {
-        let drawn = figures::of_optimisation(&problem, &done);
-        let stale = figures::NAMES
-            .iter()
-            .filter(|name| !drawn.iter().any(|(own, _)| own == *name));
-        for name in stale {
-            let _ = std::fs::remove_file(directory.join(name));
-        }
-        draw(&directory, drawn);
+        warn_of_missing(&draw_optimisation(&directory, &problem, &done));
     }
     let has_page = recorded && (job.report || course.watch);
     if recorded && !has_page {
@@ -224,50 +215,6 @@ pub(crate) fn optimise(job: &Job, course: &RunOptions) -> Result<u8, Failure> {
     }
 }
 
-/// Writes all results except figures: all of them, or only the record, or nothing. Also returns
-/// whether the record was written.
-fn write(
-    done: &Optimisation,
-    state: Option<WarmStart>,
-    optima: Option<String>,
-    directory: &Path,
-) -> (bool, Option<ReportError>) {
-    let mut files = Vec::new();
-    // If the record has no text, this is reported at the end.
-    if let Ok(text) = done.optimum.to_json() {
-        files.push((OPTIMUM, text.into_bytes()));
-    }
-    if let Ok(text) = done.history.to_csv() {
-        files.push(("history.csv", text.into_bytes()));
-    }
-    if let Some(text) = state.and_then(|state| serde_json::to_vec(&state).ok()) {
-        files.push((STATE, text));
-    }
-    let several = optima.is_some();
-    files.extend(optima.map(|text| (OPTIMA, text.into_bytes())));
-    let files: Vec<(PathBuf, Vec<u8>)> = files
-        .into_iter()
-        .map(|(name, bytes)| (directory.join(name), bytes))
-        .collect();
-    if let Err(error) = write_all(&files) {
-        let record = files.iter().find(|(path, _)| path.ends_with(OPTIMUM));
-        let recorded = record.is_some_and(|(path, bytes)| atomic_write(path, bytes).is_ok());
-        let others = files.iter().filter(|(path, _)| !path.ends_with(OPTIMUM));
-        for (path, _) in others.filter(|_| recorded) {
-            // With a new record, files of an earlier run would be wrong.
-            let _ = std::fs::remove_file(path);
-        }
-        return (recorded, Some(error));
-    }
-    // The whole history is written. A partial one that stays does no harm.
-    let _ = std::fs::remove_file(directory.join(PARTIAL));
-    if !several {
-        // The optima of an earlier run.
-        let _ = std::fs::remove_file(directory.join(OPTIMA));
-    }
-    (true, None)
-}
-
 /// Writes the record of an optimum again; returns the error of writing, if any.
 fn renew(done: &Optimisation, directory: &Path) -> Result<Option<ReportError>, Failure> {
     match done.optimum.to_json() {
@@ -283,7 +230,7 @@ fn second_order(
     problem: &Problem,
     done: &mut Optimisation,
     directory: &Path,
-    (records, start): (&Records, Start),
+    (records, start): (&Logs, Start),
     stopped: &dyn Fn() -> bool,
 ) -> Result<(), Failure> {
     if !done.outcome.converged() {
@@ -294,7 +241,7 @@ fn second_order(
     let fault = Mutex::new(None);
     let has_failed = || fault.lock().is_ok_and(|error| error.is_some());
     let ended = || stopped() || has_failed();
-    let known = opened.known_evaluations(&fault, true);
+    let known = opened.known_evaluations(&fault, None);
     let found = driver::second_order(problem, &done.outcome, &done.integration, known, &ended);
     if let Ok(Some(error)) = fault.into_inner() {
         return Err(error.into());

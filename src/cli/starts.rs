@@ -1,12 +1,13 @@
 //! `optimize PROBLEM --starts N`: the best of several optimisations.
 
 use super::progress::Counter;
-use super::records::{Records, Start, changed};
 use super::{Failure, INTERRUPTED, print, tell};
 use crate::driver::multi_start::{self, LocalOptimum, Run};
 use crate::driver::{self, KnownEvaluations};
+use crate::library::logs::{Logs, Start, changed};
+use crate::library::optimum::found_optima;
 use crate::problem::Problem;
-use crate::report::{FoundOptimum, ReportError, optima_csv};
+use crate::report::{ReportError, optima_csv};
 use std::sync::Mutex;
 use std::sync::atomic::{AtomicBool, AtomicUsize, Ordering};
 
@@ -26,7 +27,7 @@ pub(super) fn spread(problem: &Problem, count: u32) -> Result<Vec<Vec<f64>>, Fai
 pub(crate) fn several(
     problem: &Problem,
     starts: &[Vec<f64>],
-    records: &Records,
+    records: &Logs,
     stopped: &(dyn Fn() -> bool + Sync),
     quiet: bool,
 ) -> Result<(Run, String, Option<ReportError>), Failure> {
@@ -50,7 +51,7 @@ pub(crate) fn several(
                 if !opened.changes.is_empty() && !told.swap(true, Ordering::Relaxed) {
                     tell(&changed(&opened.changes));
                 }
-                Some(opened.known_evaluations(&fault, true))
+                Some(opened.known_evaluations(&fault, None))
             }
             Err(error) => {
                 if let Ok(mut first) = fault.lock() {
@@ -72,16 +73,7 @@ pub(crate) fn several(
     if !quiet {
         print(&table_of_optima((&runs, starts.len()), &optima))?;
     }
-    let found = optima.iter().map(|optimum| {
-        let run = &runs[optimum.run];
-        FoundOptimum {
-            start: run.start + 1,
-            starts: optimum.found_by,
-            objective: run.solved.objective(),
-            design: run.design(),
-        }
-    });
-    let found: Vec<FoundOptimum> = found.collect();
+    let found = found_optima(problem, &runs);
     match multi_start::best(&runs) {
         Some(best) => {
             let run = runs.swap_remove(best);

@@ -36,6 +36,9 @@ pub enum AnalysisFailure {
     /// A motion was requested of structures that do not move.
     #[error("the problem has structures that do not move, so there is no motion to simulate")]
     NoMotion,
+    /// Something else that a value or a derivative needs is missing.
+    #[error("{0}")]
+    Undefined(String),
 }
 
 impl Analysed {
@@ -111,6 +114,48 @@ impl Analysed {
         })
     }
 
+    /// Values of the functions `which`, which are finite.
+    ///
+    /// # Errors
+    /// A value is not finite; the text says of what.
+    pub fn finite_values(
+        &self,
+        problem: &Problem,
+        which: &[usize],
+    ) -> Result<Vec<f64>, AnalysisFailure> {
+        let one = |&f: &usize| match self.value(f) {
+            value if value.is_finite() => Ok(value),
+            value => {
+                let what = self.not_finite_value(problem, f, value);
+                Err(AnalysisFailure::Undefined(what))
+            }
+        };
+        which.iter().map(one).collect()
+    }
+
+    /// As [`Analysed::gradients`], of functions that have finite derivatives.
+    ///
+    /// # Errors
+    /// Also if a function has a kink here, or a derivative is not finite.
+    pub fn finite_gradients(
+        &self,
+        problem: &Problem,
+        which: &[usize],
+    ) -> Result<Vec<Vec<f64>>, AnalysisFailure> {
+        let kink = which.iter().find_map(|&f| self.no_derivative(problem, f));
+        if let Some(why) = kink {
+            return Err(AnalysisFailure::Undefined(why));
+        }
+        let (gradients, _) = self.gradients(problem, which)?;
+        for (&f, gradient) in which.iter().zip(&gradients) {
+            if let Some(i) = gradient.iter().position(|d| !d.is_finite()) {
+                let what = self.not_finite_derivative(problem, (f, i), gradient[i]);
+                return Err(AnalysisFailure::Undefined(what));
+            }
+        }
+        Ok(gradients)
+    }
+
     /// Why function f has no derivative by the design here, if so.
     pub(super) fn no_derivative(&self, problem: &Problem, f: usize) -> Option<String> {
         match self {
@@ -131,7 +176,7 @@ impl Analysed {
 
     /// Why these gradients of the functions `which` are refused, if they are: the steps do not
     /// resolve them. Where this cannot be judged they are not.
-    pub(super) fn refused(
+    pub fn refused(
         &self,
         problem: &Problem,
         which: &[usize],

@@ -2,9 +2,9 @@
 
 use super::event;
 use super::integration::{Integration, Refresh};
-use crate::adjoint;
+use crate::adjoint::{self, Target, WeightedHistories};
 use crate::functions::rest::{passes_rest, vanishing};
-use crate::functions::{Scene, evaluate, smoothed};
+use crate::functions::{Function, Reduction, Scene, evaluate, smoothed};
 use crate::integrate::{
     IntegrationFailure, Samples, Settings, Trajectory, WorkCounts, irregular, simulate_by,
 };
@@ -142,9 +142,26 @@ impl Evaluated {
         self.vanishes(problem, f, ZERO)
     }
 
+    /// Why the history of function f has no derivative by the design here, if so.
+    pub fn no_derivative_of_history(&self, problem: &Problem, f: usize) -> Option<String> {
+        let instant = self.scene.functions[f].instant()?.clone();
+        let reduction = Reduction::Integral;
+        let over_all = Function::Reduced { instant, reduction };
+        self.vanishing(problem, (f, &over_all), ZERO)
+    }
+
     fn vanishes(&self, problem: &Problem, f: usize, part: f64) -> Option<String> {
+        self.vanishing(problem, (f, &self.scene.functions[f]), part)
+    }
+
+    fn vanishing(
+        &self,
+        problem: &Problem,
+        (f, function): (usize, &Function<f64>),
+        part: f64,
+    ) -> Option<String> {
         let (scene, name) = (&self.scene, &problem.function_names[f]);
-        let norm = vanishing(&scene.functions[f], &scene.model, &self.run, part)?;
+        let norm = vanishing(function, &scene.model, &self.run, part)?;
         let advice = match norm {
             "speed" => ": take \"speed_squared\"",
             _ => "",
@@ -223,29 +240,53 @@ impl Evaluated {
             once.binary_search(f)
                 .expect("every function is in the list")
         };
+        let targets = once.iter().map(|&f| Target::Function(f)).collect();
+        let (all, counts) = self.derivatives_of(problem, targets)?;
+        let asked = which.iter().map(|f| all[place(f)].clone()).collect();
+        Ok((asked, counts))
+    }
+
+    /// Exact derivatives of functions of histories, from their cotangents: one row for each of `histories`,
+    /// one number per variable, by one backward march. Instants keep their fraction of the duration.
+    ///
+    /// # Errors
+    /// If a step's equations are singular.
+    pub fn pull_back(
+        &self,
+        problem: &Problem,
+        histories: Vec<WeightedHistories>,
+    ) -> Result<Vec<Vec<f64>>, IntegrationFailure> {
+        let targets = histories.into_iter().map(Target::Histories).collect();
+        let (all, _) = self.derivatives_of(problem, targets)?;
+        let value = |row: Vec<Derivative>| row.into_iter().map(|d| d.value).collect();
+        Ok(all.into_iter().map(value).collect())
+    }
+
+    fn derivatives_of(
+        &self,
+        problem: &Problem,
+        mut targets: Vec<Target>,
+    ) -> Result<(Vec<Vec<Derivative>>, WorkCounts), IntegrationFailure> {
+        let count = targets.len();
+        let ends_at_event = self.scene.until.is_some() && count > 0;
+        if ends_at_event {
+            targets.push(Target::Function(self.scene.event()));
+        }
+        let mut adjoint = adjoint::gradients_of(&self.scene, &self.run, &targets)?;
         let mut of_event: Option<Vec<Scene<f64>>> = None;
-        let adjoint = match &self.scene.until {
-            Some(_) if !once.is_empty() => {
-                let with_event: Vec<usize> =
-                    once.iter().copied().chain([self.scene.event()]).collect();
-                let mut found = adjoint::gradients(&self.scene, &self.run, &with_event)?;
-                if let Some(event) = found.gradients.pop() {
-                    event::refuse_touch(&self.scene, &self.run, event.duration)?;
-                    let along = |gradient: &Scene<f64>| along_event(gradient, &event);
-                    let (all, sizes): (Vec<_>, Vec<_>) = found.gradients.iter().map(along).unzip();
-                    (found.gradients, of_event) = (all, Some(sizes));
-                }
-                found
-            }
-            _ => adjoint::gradients(&self.scene, &self.run, &once)?,
-        };
+        if ends_at_event && let Some(event) = adjoint.gradients.pop() {
+            event::refuse_touch(&self.scene, &self.run, event.duration)?;
+            let along = |gradient: &Scene<f64>| along_event(gradient, &event);
+            let (all, sizes): (Vec<_>, Vec<_>) = adjoint.gradients.iter().map(along).unzip();
+            (adjoint.gradients, of_event) = (all, Some(sizes));
+        }
         let by_parameters: Vec<Vec<f64>> =
             adjoint.gradients.iter().map(Scene::parameters).collect();
         let sizes: Vec<Vec<f64>> = match &of_event {
             Some(sizes) => sizes.iter().map(Scene::parameters).collect(),
             None => by_parameters.clone(),
         };
-        let mut all = vec![Vec::with_capacity(self.x.len()); once.len()];
+        let mut all = vec![Vec::with_capacity(self.x.len()); count];
         for i in 0..self.x.len() {
             let moved = parameter_derivatives(problem, &self.x, i);
             let rows = by_parameters.iter().zip(&sizes);
@@ -258,8 +299,7 @@ impl Evaluated {
                 gradient.push(sum);
             }
         }
-        let asked = which.iter().map(|f| all[place(f)].clone()).collect();
-        Ok((asked, adjoint.counts))
+        Ok((all, adjoint.counts))
     }
 }
 

@@ -3,7 +3,6 @@
 use super::evaluator::Evaluator;
 use super::known_evaluations::KnownEvaluations;
 use super::multi_start::{best, distinct, multi_start};
-use super::record::verdict;
 use crate::optimiser::{EvaluationFailure, Nlp, Outcome};
 use crate::problem::Problem;
 use crate::report::SweptOptimum;
@@ -71,7 +70,7 @@ pub fn swept(
     let optimum = SweptOptimum {
         value,
         problem: problem.hash.clone(),
-        status: verdict(&outcome.status).0.to_owned(),
+        status: outcome.status.verdict().0.to_owned(),
         converged: outcome.converged(),
         evaluations,
         objective,

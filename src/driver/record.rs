@@ -3,7 +3,7 @@
 use super::alike::{Message, grouped};
 use super::analysed::{AnalysisFailure, Simulated, notes_of_start};
 use super::evaluator::unscaled;
-use crate::optimiser::{self, Method, Outcome, Status};
+use crate::optimiser::{self, Method, Outcome};
 use crate::problem::{Problem, Sense};
 use crate::report::evaluations::Work;
 use crate::report::optimum::{
@@ -11,64 +11,6 @@ use crate::report::optimum::{
     Multipliers, Objective, Optimum, ProblemRecord, RowScaling, Scaling, Sense as RecordedSense,
 };
 use indexmap::IndexMap;
-
-/// One word and one sentence for how the run ended.
-pub(super) fn verdict(status: &Status) -> (&'static str, String) {
-    match status {
-        Status::Converged => ("converged", "the optimality conditions hold".into()),
-        Status::AtPrecision => (
-            "at_precision",
-            "what could still be gained is below the rounding of the objective, \
-             but the optimality conditions do not hold to the tolerance"
-                .into(),
-        ),
-        Status::Infeasible {
-            constraint,
-            violation,
-        } => (
-            "infeasible",
-            format!(
-                "no feasible design was found: \"{constraint}\" is violated by {violation:.3e}, \
-                 and no small change reduces the violation"
-            ),
-        ),
-        Status::IllPosed { what } => ("ill_posed", format!("the problem makes no sense: {what}")),
-        Status::Unbounded => ("unbounded", "the objective improves without bound".into()),
-        Status::UndefinedStart { what } => (
-            "undefined_start",
-            format!("the start cannot be evaluated: {what}"),
-        ),
-        Status::Inconsistent { what } => {
-            let text = format!("values and gradients disagree: {what}");
-            ("inconsistent", text)
-        }
-        Status::Degenerate { constraint } => (
-            "degenerate",
-            format!(
-                "the derivatives of \"{constraint}\" vanish where it holds, so no multipliers exist; \
-                 the best design that was found is kept"
-            ),
-        ),
-        Status::Panicked { what } => (
-            "panicked",
-            format!("an evaluation panicked ({what}); the best design so far is kept"),
-        ),
-        Status::Stalled => (
-            "stalled",
-            "no further progress; the best design that was found is kept".into(),
-        ),
-        Status::IterationLimit => ("iteration_limit", "the iteration limit was reached".into()),
-        Status::EvaluationLimit => (
-            "evaluation_limit",
-            "the evaluation limit was reached".into(),
-        ),
-        Status::TimeLimit => ("time_limit", "the time limit was reached".into()),
-        Status::Interrupted => (
-            "interrupted",
-            "interrupted; the best design so far is kept".into(),
-        ),
-    }
-}
 
 pub(super) fn record(
     problem: &Problem,
@@ -78,13 +20,13 @@ pub(super) fn record(
     (work, refreshes): (Work, usize),
     (start, end): (&Result<Simulated, AnalysisFailure>, Option<&Simulated>),
 ) -> Optimum {
-    let (status, mut sentence) = verdict(&outcome.status);
+    let (status, mut sentence) = outcome.status.verdict();
     if let Some(other) = &outcome.other {
         let (own, replaced) = match outcome.method {
             Method::TrustRegion => ("trust region", "interior point"),
             Method::InteriorPoint | Method::Auto => ("interior point", "trust region"),
         };
-        let (_, why) = verdict(other);
+        let (_, why) = other.verdict();
         sentence += &format!(" (by the {own}; the {replaced} ended so: {why})");
     }
     let x = unscaled(problem, &outcome.x);

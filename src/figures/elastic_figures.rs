@@ -182,8 +182,11 @@ pub(super) fn keep_the_largest(designs: &mut [Curves], seen: f64) -> String {
 
 /// The largest stress of each body whose stresses are known against time \[Pa\]: von Mises stress of shells at
 /// their Gauss points, size of the stress along all outer fibres of beams. A body of shells and beams has both.
-pub fn stresses(title: &str, simulation: &Simulation, drawing: &Drawing) -> Curves {
-    let (model, run) = (&simulation.written.model, simulation.motion());
+pub fn stresses(
+    title: &str,
+    (model, run): (&Model<f64>, &Trajectory<f64>),
+    drawing: &Drawing,
+) -> Curves {
     let mut curves = Vec::new();
     for (body, rigid) in model.bodies.iter().enumerate() {
         let known = known(model, body, drawing);

@@ -74,7 +74,10 @@ fn figures(
         all.push(("convergence.svg", convergence(history)));
     }
     let pairs = || designs.iter().zip(&drawings);
-    let curves = pairs().map(|((title, design), drawing)| stresses(title, design, drawing));
+    let curves = pairs().map(|((title, design), drawing)| {
+        let motion = (&design.written.model, design.motion());
+        stresses(title, motion, drawing)
+    });
     let mut stressed: Vec<Curves> = curves.collect();
     let lapses: Vec<Motion> = designs
         .iter()

@@ -46,7 +46,11 @@ impl<'a> Shown<'a> {
         Self {
             title,
             simulation,
-            stresses: stresses(title, simulation, &drawing),
+            stresses: stresses(
+                title,
+                (&simulation.written.model, simulation.motion()),
+                &drawing,
+            ),
             drawing,
             objective: problem.stated_objective().map(|own| own.function),
         }

@@ -62,3 +62,64 @@ pub enum Status {
     /// The observer asked to stop.
     Interrupted,
 }
+
+impl Status {
+    /// One word and one sentence for how the run ended.
+    #[must_use]
+    pub fn verdict(&self) -> (&'static str, String) {
+        match self {
+            Self::Converged => ("converged", "the optimality conditions hold".into()),
+            Self::AtPrecision => (
+                "at_precision",
+                "what could still be gained is below the rounding of the objective, \
+             but the optimality conditions do not hold to the tolerance"
+                    .into(),
+            ),
+            Self::Infeasible {
+                constraint,
+                violation,
+            } => (
+                "infeasible",
+                format!(
+                    "no feasible design was found: \"{constraint}\" is violated by {violation:.3e}, \
+                 and no small change reduces the violation"
+                ),
+            ),
+            Self::IllPosed { what } => ("ill_posed", format!("the problem makes no sense: {what}")),
+            Self::Unbounded => ("unbounded", "the objective improves without bound".into()),
+            Self::UndefinedStart { what } => (
+                "undefined_start",
+                format!("the start cannot be evaluated: {what}"),
+            ),
+            Self::Inconsistent { what } => {
+                let text = format!("values and gradients disagree: {what}");
+                ("inconsistent", text)
+            }
+            Self::Degenerate { constraint } => (
+                "degenerate",
+                format!(
+                    "the derivatives of \"{constraint}\" vanish where it holds, so no multipliers exist; \
+                 the best design that was found is kept"
+                ),
+            ),
+            Self::Panicked { what } => (
+                "panicked",
+                format!("an evaluation panicked ({what}); the best design so far is kept"),
+            ),
+            Self::Stalled => (
+                "stalled",
+                "no further progress; the best design that was found is kept".into(),
+            ),
+            Self::IterationLimit => ("iteration_limit", "the iteration limit was reached".into()),
+            Self::EvaluationLimit => (
+                "evaluation_limit",
+                "the evaluation limit was reached".into(),
+            ),
+            Self::TimeLimit => ("time_limit", "the time limit was reached".into()),
+            Self::Interrupted => (
+                "interrupted",
+                "interrupted; the best design so far is kept".into(),
+            ),
+        }
+    }
+}

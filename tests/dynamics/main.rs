@@ -29,6 +29,7 @@ mod flexible_gradients;
 mod flexible_motion;
 mod gradients_converge_to_references;
 mod gradients_match_complex_step;
+mod histories;
 mod initial_conditions;
 mod joint_starts;
 mod joint_starts_in_loops;

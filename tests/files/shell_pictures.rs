@@ -32,7 +32,7 @@ fn histories_are_those_of_the_functions() {
     let problem = parsed(&short());
     let motion = simulate(&problem, &problem.start()).unwrap_or_else(|failure| panic!("{failure}"));
     let drawing = problem.drawing(&problem.start());
-    let found = stresses("", &motion, &drawing);
+    let found = stresses("", (&motion.written.model, motion.motion()), &drawing);
     assert_eq!(found.curves.len(), 2);
     let value = |name: &str| {
         let names = &mut problem.function_names.iter();

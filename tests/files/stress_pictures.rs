@@ -61,7 +61,11 @@ fn four_bar() -> Problem {
 fn drawn_stresses_of_beams_are_those_of_the_function() {
     let problem = four_bar();
     let motion = moved(&problem);
-    let drawn = stresses("", &motion, &problem.drawing(&problem.start()));
+    let drawn = stresses(
+        "",
+        (&motion.written.model, motion.motion()),
+        &problem.drawing(&problem.start()),
+    );
     assert_eq!(drawn.curves.len(), 3);
     for (name, values) in &drawn.curves {
         let expected = sampled(&problem, &motion, &format!("all of {name}"));
@@ -162,7 +166,11 @@ fn beams_of_elements_have_their_stresses() {
     let text = |k: usize| std::str::from_utf8(&figures[k].1).expect("text");
     assert!(text(0).contains("strip: stress from"));
     assert!(text(2).contains("strip: tip along z"));
-    let drawn = stresses("", &motion, &problem.drawing(&problem.start()));
+    let drawn = stresses(
+        "",
+        (&motion.written.model, motion.motion()),
+        &problem.drawing(&problem.start()),
+    );
     let expected = sampled(&problem, &motion, "all");
     for (drawn, expected) in drawn.curves[0].1.iter().zip(&expected) {
         assert!((drawn - expected).abs() <= SLACK, "{drawn} {expected}");

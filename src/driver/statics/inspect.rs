@@ -1,6 +1,6 @@
 //! Data of a solved design for figures and texts.
 
-use super::StaticDesign;
+use super::{StaticDesign, StaticsFailure, of_modes};
 use crate::math::Vec3;
 use crate::structures::modes::Modes;
 use crate::structures::statics::StaticProblem;
@@ -11,6 +11,16 @@ impl StaticDesign {
         let lowest = self.lowest.iter().flatten().map(|found| &found.modes);
         let all = self.modes.iter().chain(lowest);
         all.max_by_key(|modes| modes.vectors.len())
+    }
+
+    /// The `count` lowest modes besides rigid motions, or all if there are fewer.
+    ///
+    /// # Errors
+    /// Modes are not found.
+    pub fn lowest_modes(&mut self, count: usize) -> Result<Modes, StaticsFailure> {
+        let (statics, structure) = (self.statics.clone(), self.scene.structure.clone());
+        let modal = of_modes(self.workspace(), &statics, &structure)?;
+        Ok(modal.solve_at_most(&structure, count)?)
     }
 
     /// The displacements of the nodes in a mode.

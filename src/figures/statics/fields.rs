@@ -3,7 +3,8 @@
 use super::figures::{OfCase, of_case, yield_stresses};
 use crate::driver::statics::StaticDesign;
 use crate::math::Vec3;
-use crate::shell_fields::{name_of_stress, name_of_thickness};
+use crate::shell_fields::{UNKNOWN, name_of_stress, name_of_thickness};
+use crate::structures::shell::STRESS_POINTS;
 use crate::vtu::{Fields, vtu};
 use std::f64::consts::PI;
 
@@ -42,13 +43,12 @@ pub fn fields(design: &StaticDesign) -> String {
         fields
             .vectors
             .push((format!("rotation, {name} [rad]"), rotation));
-        let pairs = stress.iter().zip(yield_stresses(design));
-        let largest = pairs.map(|(all, y)| y * all.iter().copied().fold(0.0, f64::max));
+        let largest = largest_of_shells(design, &stress);
         let of = format!(", {name}");
         let name = name_of_stress(mesh.shells.is_empty(), &along, &of);
         fields
             .of_elements
-            .push((name, largest.chain(along).collect()));
+            .push((name, largest.into_iter().chain(along).collect()));
     }
     if let Some(found) = design.some_modes() {
         for (k, x) in found.vectors.iter().enumerate() {
@@ -61,4 +61,20 @@ pub fn fields(design: &StaticDesign) -> String {
         }
     }
     vtu(&fields)
+}
+
+/// The largest von Mises stress of each shell, and the largest stress along the outer fibres of each beam,
+/// NaN where its section has no size \[Pa\]; `None` if the case is not solved.
+pub fn stresses(design: &StaticDesign, case: usize) -> Option<[Vec<f64>; 2]> {
+    let found = of_case(design, case)?;
+    let known = |stress: f64| if stress == UNKNOWN { f64::NAN } else { stress };
+    let along = found.along.into_iter().map(known).collect();
+    Some([largest_of_shells(design, &found.stress), along])
+}
+
+fn largest_of_shells(design: &StaticDesign, ratios: &[[f64; STRESS_POINTS]]) -> Vec<f64> {
+    let pairs = ratios.iter().zip(yield_stresses(design));
+    pairs
+        .map(|(all, y)| y * all.iter().copied().fold(0.0, f64::max))
+        .collect()
 }

@@ -20,6 +20,25 @@ pub struct AdjointRun {
     pub counts: WorkCounts,
 }
 
+/// What a backward march differentiates.
+#[derive(Clone, Debug)]
+pub enum Target {
+    /// A function of interest, by its number in the scene.
+    Function(usize),
+    /// Σ w_k g(t_k) of histories.
+    Histories(WeightedHistories),
+}
+
+/// Σ_f Σ_k w_fk g_f(t_k) + Σ_k u_k t_k over the instants t_k of a run, with the quantities g_f behind
+/// functions of interest: the cotangents of a function of histories.
+#[derive(Clone, Debug, Default)]
+pub struct WeightedHistories {
+    /// The functions that reduce a quantity, and the weight of the quantity at each instant.
+    pub functions: Vec<(usize, Vec<f64>)>,
+    /// Weights of the instants themselves, which move with the duration; empty for none.
+    pub times: Vec<f64>,
+}
+
 /// Exact derivatives of the functions `which` (indices into the scene's functions) over `run`, by
 /// one backward march.
 ///
@@ -30,11 +49,24 @@ pub fn gradients(
     run: &Trajectory<f64>,
     which: &[usize],
 ) -> Result<AdjointRun, IntegrationFailure> {
+    let targets: Vec<Target> = which.iter().map(|&f| Target::Function(f)).collect();
+    gradients_of(scene, run, &targets)
+}
+
+/// [`gradients`] of any targets.
+///
+/// # Errors
+/// The equations of a step are singular.
+pub fn gradients_of(
+    scene: &Scene<f64>,
+    run: &Trajectory<f64>,
+    targets: &[Target],
+) -> Result<AdjointRun, IntegrationFailure> {
     match &run.tape {
-        Tape::Explicit(tape) => explicit::gradients(scene, run, tape, which),
+        Tape::Explicit(tape) => explicit::gradients(scene, run, tape, targets),
         Tape::Implicit(tape) if flexible::has_shells(&scene.model) => {
-            rayon::scope(|_| implicit::gradients(scene, run, tape, which))
+            rayon::scope(|_| implicit::gradients(scene, run, tape, targets))
         }
-        Tape::Implicit(tape) => implicit::gradients(scene, run, tape, which),
+        Tape::Implicit(tape) => implicit::gradients(scene, run, tape, targets),
     }
 }

@@ -1,6 +1,7 @@
-//! One function during the backward march: its cotangents at the samples and at the present state,
+//! One target during the backward march: its cotangents at the samples and at the present state,
 //! and its derivatives in the parameters so far.
 
+use super::Target;
 use super::compensated::Compensated;
 use crate::functions::linearised::Linearised;
 use crate::functions::snapshot::{Snapshot, SnapshotCotangent};
@@ -11,15 +12,21 @@ use crate::linalg::REFINED_SOLVES;
 use crate::system::kkt::SaddlePoint;
 use crate::system::{bodies, initial};
 
-/// One function during the backward march.
-pub(super) struct Sensitivity<'a> {
+/// A function of interest, or a weighted history, as a part of a target.
+struct Term<'a> {
     linearised: Linearised<'a>,
-    own: usize,
+    /// Number of the function in the scene.
+    function: usize,
     /// Multipliers of the joint whose reaction the function observes.
     joint: Option<JointMultipliers<'a, f64>>,
+}
+
+/// One target during the backward march.
+pub(super) struct Sensitivity<'a> {
+    terms: Vec<Term<'a>>,
     /// Derivatives in the parameters of the scene so far.
     pub cot: Scene<f64>,
-    /// Derivative in the duration through the step sizes.
+    /// Derivative in the duration through the step sizes and the instants.
     pub by_duration: f64,
     /// Cotangent of the present positions; seven coordinates per body.
     pub q: Compensated,
@@ -30,30 +37,48 @@ pub(super) struct Sensitivity<'a> {
 }
 
 impl<'a> Sensitivity<'a> {
-    /// Function number `own` of the scene, at the end of `run`.
-    pub fn new(scene: &'a Scene<f64>, run: &'a Trajectory<f64>, own: usize) -> Self {
+    /// A target over a run of `scene`, at its end.
+    pub fn new(scene: &'a Scene<f64>, run: &'a Trajectory<f64>, target: &Target) -> Self {
         let (nq, nv) = (run.numbering.positions(), run.numbering.velocities());
-        let function = scene.function(own);
-        let joint = function.instant().and_then(|own| own.reacting_joint());
-        let joint = joint.map(|j| JointMultipliers::new(&scene.model, &run.numbering, j));
+        let term = |number: usize, weights: Option<&[f64]>| {
+            let function = scene.function(number);
+            let joint = function.instant().and_then(|own| own.reacting_joint());
+            let joint = joint.map(|j| JointMultipliers::new(&scene.model, &run.numbering, j));
+            Term {
+                linearised: match weights {
+                    Some(weights) => Linearised::history(function, weights, run),
+                    None => Linearised::new(function, &scene.model, run),
+                },
+                function: number,
+                joint,
+            }
+        };
+        let (terms, by_duration) = match target {
+            Target::Function(number) => (vec![term(*number, None)], 0.0),
+            Target::Histories(histories) => {
+                let terms = histories.functions.iter();
+                let terms = terms.map(|(number, weights)| term(*number, Some(weights)));
+                let times = histories.times.iter().zip(&run.instants);
+                let by_time = times.map(|(weight, &at)| weight * run.grid.rate(at)).sum();
+                (terms.collect(), by_time)
+            }
+        };
         Self {
-            linearised: Linearised::new(function, &scene.model, run),
-            joint,
-            own,
+            terms,
             cot: scene.zero_cotangent(),
-            by_duration: 0.0,
+            by_duration,
             q: Compensated::zero(nq),
             v: Compensated::zero(nv),
             sample: std::array::from_fn(|_| vec![0.0; nv]),
         }
     }
 
-    /// Whether the function depends on the states of sample k.
+    /// Whether the target depends on the states of sample k.
     pub fn depends_on(&self, k: usize) -> bool {
-        self.linearised.depends_on(k)
+        self.terms.iter().any(|term| term.linearised.depends_on(k))
     }
 
-    /// Sets `sample` to the partial derivatives of the function at sample k; false if there are
+    /// Sets `sample` to the partial derivatives of the target at sample k; false if there are
     /// none.
     pub fn linearise(&mut self, scene: &Scene<f64>, run: &Trajectory<f64>, k: usize) -> bool {
         if !self.depends_on(k) {
@@ -63,24 +88,27 @@ impl<'a> Sensitivity<'a> {
             part.fill(0.0);
         }
         let [y, v, a] = &mut self.sample;
-        let (model, own) = self.cot.model_and_function(self.own);
-        let rows = self.joint.as_ref().map_or(0, JointMultipliers::count);
-        let (mut lambda, mut by_time) = (vec![0.0; rows], 0.0);
-        let mut out = SnapshotCotangent {
-            y: &mut *y,
-            v: &mut *v,
-            a,
-            lambda: &mut lambda,
-            time: &mut by_time,
-            model: &mut *model,
-        };
-        let at = Snapshot {
-            joint: (self.joint.as_mut()).map_or(Rows::none(), |joint| joint.at(run, k)),
-            ..Snapshot::of(&scene.model, run, k)
-        };
-        self.linearised.pull_back(k, &at, &mut out, own);
-        if let Some(joint) = &mut self.joint {
-            by_time += joint.pull_back(&lambda, (y, v), model);
+        let mut by_time = 0.0;
+        for term in (self.terms.iter_mut()).filter(|term| term.linearised.depends_on(k)) {
+            let (model, own) = self.cot.model_and_function(term.function);
+            let rows = term.joint.as_ref().map_or(0, JointMultipliers::count);
+            let mut lambda = vec![0.0; rows];
+            let mut out = SnapshotCotangent {
+                y: &mut *y,
+                v: &mut *v,
+                a: &mut *a,
+                lambda: &mut lambda,
+                time: &mut by_time,
+                model: &mut *model,
+            };
+            let at = Snapshot {
+                joint: (term.joint.as_mut()).map_or(Rows::none(), |joint| joint.at(run, k)),
+                ..Snapshot::of(&scene.model, run, k)
+            };
+            term.linearised.pull_back(k, &at, &mut out, own);
+            if let Some(joint) = &mut term.joint {
+                by_time += joint.pull_back(&lambda, (&mut *y, &mut *v), model);
+            }
         }
         self.by_duration += run.grid.rate(run.instants[k]) * by_time;
         true
@@ -99,9 +127,8 @@ impl<'a> Sensitivity<'a> {
         a: &[f64],
         counts: &mut WorkCounts,
     ) -> Result<(), IntegrationFailure> {
-        if let Some(joint) = &self.joint {
-            counts.factorisations += joint.factorisations();
-        }
+        let joints = self.terms.iter().filter_map(|term| term.joint.as_ref());
+        counts.factorisations += joints.map(JointMultipliers::factorisations).sum::<usize>();
         let before = saddle.factorisations;
         let mut y = vec![0.0; a.len()];
         bodies::tangent_of_cotangent(&run.numbering, &run.initial.q, &self.q.value, &mut y);
@@ -116,9 +143,12 @@ impl<'a> Sensitivity<'a> {
         )?;
         counts.factorisations += saddle.factorisations - before;
         counts.solves += REFINED_SOLVES * (saddle.factorisations - before);
-        cot.duration = self.by_duration + self.linearised.by_duration;
-        self.linearised
-            .pull_back_parameters(cot.model_and_function(self.own).1);
+        let by_terms = self.terms.iter().map(|term| term.linearised.by_duration);
+        cot.duration = self.by_duration + by_terms.sum::<f64>();
+        for term in &self.terms {
+            let own = cot.model_and_function(term.function).1;
+            term.linearised.pull_back_parameters(own);
+        }
         Ok(())
     }
 }

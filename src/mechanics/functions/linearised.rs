@@ -125,6 +125,22 @@ impl<'a> Linearised<'a> {
         this
     }
 
+    /// Σ w_k g(t_k) of the quantity g that `function` reduces, with a weight for every instant of the run.
+    pub fn history(function: &'a Function<f64>, weights: &[f64], run: &Trajectory<f64>) -> Self {
+        let quantity = function.instant().map(|instant| Weighted {
+            instant: instant.clone(),
+            turns: turns(instant.watched_rotation(), run),
+            weights: weights.to_vec(),
+        });
+        Self {
+            function,
+            by_duration: 0.0,
+            quantity,
+            flight: None,
+            by_barrier: [0.0; 2],
+        }
+    }
+
     /// dc = c_z · Σ (w_k dz_k + z_k dw_k) with dw_k = ρ w_k (dR_k − Σ w dR): the mean state depends
     /// on the states and on the weights.
     fn at_best_release(

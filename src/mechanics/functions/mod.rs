@@ -4,6 +4,7 @@ mod energy;
 pub mod evaluate;
 pub mod flight;
 pub mod function;
+pub mod histories;
 pub mod instant;
 pub mod linearised;
 mod measure;

@@ -83,6 +83,14 @@ impl Progress {
         self.ends.store(true, Relaxed);
     }
 
+    /// Lets simulations run again after a deadline.
+    pub fn go_on(&self) {
+        self.ends.store(false, Relaxed);
+        if let Ok(mut own) = self.deadline.lock() {
+            *own = None;
+        }
+    }
+
     /// Whether simulations must end now.
     pub fn is_over(&self) -> bool {
         let passed = |deadline: &Instant| Instant::now() >= *deadline;

@@ -21,8 +21,8 @@
 mod projection;
 mod sweep;
 
-use super::AdjointRun;
 use super::sensitivity::Sensitivity;
+use super::{AdjointRun, Target};
 use crate::functions::Scene;
 use crate::integrate::explicit::march::failed;
 use crate::integrate::explicit::step::StepFailure;
@@ -39,11 +39,11 @@ pub(super) fn gradients(
     scene: &Scene<f64>,
     run: &Trajectory<f64>,
     tape: &Tape<f64>,
-    which: &[usize],
+    targets: &[Target],
 ) -> Result<AdjointRun, IntegrationFailure> {
     let (model, numbering) = (&scene.model, &run.numbering);
-    let new = |&own: &usize| Sweep::new(Sensitivity::new(scene, run, own), numbering);
-    let mut sweeps: Vec<Sweep> = which.iter().map(new).collect();
+    let new = |target: &Target| Sweep::new(Sensitivity::new(scene, run, target), numbering);
+    let mut sweeps: Vec<Sweep> = targets.iter().map(new).collect();
     let mut field = Accelerations::new(model, numbering);
     let mut scratch = scene.zero_cotangent().model;
     let mut replay = Replay::new(tape, run.grid.steps(), || Replayer::new(model, run));

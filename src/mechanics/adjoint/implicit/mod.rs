@@ -26,8 +26,8 @@ mod radau;
 mod step;
 mod sweep;
 
-use super::AdjointRun;
 use super::sensitivity::Sensitivity;
+use super::{AdjointRun, Target};
 use crate::functions::Scene;
 use crate::integrate::implicit::formula::{Formula, remembers_start};
 use crate::integrate::implicit::radau::Scheme;
@@ -46,16 +46,16 @@ pub(super) fn gradients(
     scene: &Scene<f64>,
     run: &Trajectory<f64>,
     tape: &Tape<f64>,
-    which: &[usize],
+    targets: &[Target],
 ) -> Result<AdjointRun, IntegrationFailure> {
     let (model, numbering) = (&scene.model, &run.numbering);
     let scheme = Scheme::of(run.method);
     let stages = scheme.stages();
-    let new = |&own: &usize| {
-        let of = Sensitivity::new(scene, run, own);
+    let new = |target: &Target| {
+        let of = Sensitivity::new(scene, run, target);
         Sweep::new(of, numbering, (run.method, stages))
     };
-    let mut sweeps: Vec<Sweep> = which.iter().map(new).collect();
+    let mut sweeps: Vec<Sweep> = targets.iter().map(new).collect();
     let mut one = None;
     let mut coupled = None;
     let shells = flexible::has_shells(model);

@@ -2,15 +2,11 @@
 
 use std::time::{SystemTime, UNIX_EPOCH};
 
-/// The words of the command line and the time, such as `optimize a.json --report, 2026-03-01 12:30 UTC`.
-pub(super) fn made() -> String {
-    let words: Vec<String> = std::env::args_os()
-        .skip(1)
-        .map(|word| word.to_string_lossy().into_owned())
-        .collect();
+/// What made a page, such as a command, and the time: `optimize a.json --report, 2026-03-01 12:30 UTC`.
+pub(crate) fn made(by: &str) -> String {
     let now = SystemTime::now().duration_since(UNIX_EPOCH);
     let seconds = now.map_or(0, |own| own.as_secs());
-    format!("optimize {}, {}", words.join(" "), date(seconds))
+    format!("{by}, {}", date(seconds))
 }
 
 /// Seconds since 1970 as a date of the Gregorian calendar and a time (H. Hinnant, chrono-compatible low-level date

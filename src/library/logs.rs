@@ -1,9 +1,8 @@
 //! The evaluation logs of a run, new or resumed.
 
-use super::{Failure, shown, tell};
 use crate::driver::integration::FIRST_DESIGN;
 use crate::driver::{KnownEvaluations, known_evaluations};
-use crate::problem::Problem;
+use crate::problem::{Problem, visible};
 use crate::report::ReportError;
 use crate::report::evaluations::{Earlier, EvaluationLog, EvaluationRecord, Found, StepsInUse};
 use std::path::{Path, PathBuf};
@@ -15,9 +14,9 @@ const SINGLE: &str = "evaluations.jsonl";
 /// them.
 const SEVERAL: (&str, &str) = ("evaluations.start_", ".jsonl");
 
-/// Directory of the logs of a run, and of those of the run that it resumes, if any.
-pub(crate) struct Records<'a> {
-    directory: &'a Path,
+/// Directory of the logs of a run, if it writes any, and of those of the run that it resumes, if any.
+pub(crate) struct Logs<'a> {
+    directory: Option<&'a Path>,
     resumed: Option<&'a Path>,
 }
 
@@ -39,7 +38,7 @@ impl Start {
 
 /// The opened log of one start.
 pub(crate) struct Opened {
-    log: EvaluationLog,
+    log: Option<EvaluationLog>,
     earlier: Vec<EvaluationRecord>,
     /// Number of evaluations of an earlier run.
     pub known: usize,
@@ -47,18 +46,25 @@ pub(crate) struct Opened {
     pub changes: Vec<String>,
 }
 
-impl<'a> Records<'a> {
+impl<'a> Logs<'a> {
     /// The logs of a run in `directory`, which exists. Logs of another run in it are removed,
     /// unless this run is resumed.
-    pub(crate) fn new(directory: &'a Path, resumed: Option<&'a Path>) -> Result<Self, Failure> {
-        let same =
+    ///
+    /// # Errors
+    /// A log of another run cannot be removed.
+    pub(crate) fn new(
+        directory: Option<&'a Path>,
+        resumed: Option<&'a Path>,
+    ) -> Result<Self, ReportError> {
+        let same = |directory: &Path| {
             resumed.is_some_and(
                 |from| match (from.canonicalize(), directory.canonicalize()) {
                     (Ok(a), Ok(b)) => a == b,
                     _ => from == directory,
                 },
-            );
-        if !same {
+            )
+        };
+        if let Some(directory) = directory.filter(|own| !same(own)) {
             remove(directory)?;
         }
         Ok(Self { directory, resumed })
@@ -83,7 +89,7 @@ impl<'a> Records<'a> {
 
     /// Opens the log of a start of this run again.
     pub(crate) fn reopen(&self, start: Start, problem: &Problem) -> Result<Opened, ReportError> {
-        self.opened(Some(self.directory), start, problem)
+        self.opened(self.directory, start, problem)
     }
 
     fn opened(
@@ -98,7 +104,10 @@ impl<'a> Records<'a> {
             Some(from) => Earlier::read(&from.join(&file), &head)?,
             None => None,
         };
-        let log = EvaluationLog::create(&self.directory.join(&file), &head, earlier.as_ref())?;
+        let create = |directory: &Path| {
+            EvaluationLog::create(&directory.join(&file), &head, earlier.as_ref())
+        };
+        let log = self.directory.map(create).transpose()?;
         let changes = earlier.as_ref().map(|earlier| head.changes(&earlier.head));
         let earlier = earlier.map_or_else(Vec::new, |earlier| earlier.records);
         let evaluation = |record: &&EvaluationRecord| !matches!(record.found, Found::Steps(_));
@@ -113,17 +122,19 @@ impl<'a> Records<'a> {
 
 impl Opened {
     /// The known evaluations of the log. The first failure to write is stored in `fault`. Choices
-    /// of steps are reported unless `quiet`.
+    /// of steps are reported to `tell`, if it is given.
     pub(crate) fn known_evaluations(
         self,
         fault: &Mutex<Option<ReportError>>,
-        quiet: bool,
+        tell: Option<fn(&str)>,
     ) -> KnownEvaluations<'_> {
-        let mut log = self.log;
+        let Some(mut log) = self.log else {
+            return KnownEvaluations::new(self.earlier, |_| {});
+        };
         KnownEvaluations::new(self.earlier, move |evaluation| {
             // The first choice of equal steps needs no report.
             let told = |steps: &StepsInUse| !steps.ends.is_empty() || steps.reason != FIRST_DESIGN;
-            if let (false, Found::Steps(steps)) = (quiet, &evaluation.found)
+            if let (Some(tell), Found::Steps(steps)) = (tell, &evaluation.found)
                 && told(steps)
             {
                 let count = match steps.ends.len() {
@@ -152,11 +163,14 @@ pub(crate) fn changed(changes: &[String]) -> String {
         .collect()
 }
 
-/// Rejects a directory without a run, or with one of the other kind, before anything is changed.
+/// Why a directory has no run that can be resumed, if so: there is none in it, or one of the other kind.
 /// `several` states whether the resumed run has several starts.
-pub(crate) fn refuse_without_run(from: &Path, several: bool) -> Result<(), Failure> {
+///
+/// # Errors
+/// The directory cannot be read.
+pub(crate) fn without_run(from: &Path, several: bool) -> Result<Option<String>, ReportError> {
     if !from.is_dir() {
-        return Err(Failure::bad_input(format!(
+        return Ok(Some(format!(
             "found no directory {}, expected that of the run to resume; to begin one, leave --resume \
              out",
             shown(from)
@@ -171,9 +185,9 @@ pub(crate) fn refuse_without_run(from: &Path, several: bool) -> Result<(), Failu
         false => (&single, &multiple, "give --starts N"),
     };
     if !wanted.is_empty() {
-        return Ok(());
+        return Ok(None);
     }
-    Err(Failure::bad_input(match others.first() {
+    Ok(Some(match others.first() {
         Some(file) => format!(
             "found {}, expected the record of {}: {advice} to resume it",
             shown(file),
@@ -191,8 +205,12 @@ pub(crate) fn refuse_without_run(from: &Path, several: bool) -> Result<(), Failu
     }))
 }
 
+fn shown(path: &Path) -> String {
+    visible(&path.display().to_string())
+}
+
 /// All logs in a directory.
-fn files(directory: &Path) -> Result<Vec<PathBuf>, Failure> {
+fn files(directory: &Path) -> Result<Vec<PathBuf>, ReportError> {
     let entries = std::fs::read_dir(directory).map_err(|source| ReportError::Read {
         path: directory.to_path_buf(),
         source,
@@ -212,7 +230,7 @@ fn files(directory: &Path) -> Result<Vec<PathBuf>, Failure> {
     Ok(all)
 }
 
-fn remove(directory: &Path) -> Result<(), Failure> {
+fn remove(directory: &Path) -> Result<(), ReportError> {
     for path in files(directory)? {
         std::fs::remove_file(&path).map_err(|source| ReportError::Write { path, source })?;
     }
