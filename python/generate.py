@@ -502,9 +502,22 @@ def indent(text: str, depth: int) -> str:
     return textwrap.indent(text, " " * depth)
 
 
+def without_expressions(schema: Any) -> Any:
+    """The schema whose numbers are numbers; that each may be an expression is said once, of the type `Real`."""
+    if isinstance(schema, list):
+        return [without_expressions(item) for item in schema]
+    if not isinstance(schema, dict):
+        return schema
+    plain = {key: without_expressions(item) for key, item in schema.items()}
+    if isinstance(plain.get("type"), list):
+        plain["type"] = next(kind for kind in plain["type"] if kind != "string")
+        plain.pop("pattern", None)
+    return plain
+
+
 def generate(schema: Schema) -> str:
     """Text of `parts.py`."""
-    return Generator(schema).write()
+    return Generator(without_expressions(schema)).write()
 
 
 def main() -> None:

@@ -50,42 +50,60 @@ class Functions:
 class Histories:
     """Histories (n_names, n_t) of the quantities of functions, and what a weight of them does to a design (n_x,).
 
-    The start of the file is simulated to learn which there are.
+    The start of the file is simulated to learn which there are. "time" stands for the instants, unless a function has
+    that name.
     """
 
-    def __init__(self, problem: Problem, names: Sequence[str], at: ArrayLike | None, failures: str) -> None:
+    def __init__(
+        self,
+        problem: Problem,
+        names: Sequence[str],
+        at: ArrayLike | None,
+        fractions: ArrayLike | None,
+        failures: str,
+    ) -> None:
         self.problem = problem
-        self.at = None if at is None else np.array(at, dtype=np.float64)
-        if self.at is not None and self.at.ndim != 1:
-            raise ValueError(f"at: expected a list of instants, found shape {self.at.shape}")
+        if at is not None and fractions is not None:
+            raise ValueError("histories: found both at and fractions, expected one of them")
+        self.when: dict[str, Array] = {}
+        for argument, given in (("at", at), ("fractions", fractions)):
+            if given is not None:
+                self.when[argument] = np.array(given, dtype=np.float64)
+                if self.when[argument].ndim != 1:
+                    what = f"expected a list of numbers, found shape {self.when[argument].shape}"
+                    raise ValueError(f"{argument}: {what}")
         self.nan = survives(failures)
         self.inputs = len(problem.variables)
-        start = problem.simulate(at=self.at)
+        start = problem.simulate(None, **self.when)
         self.instants = int(start.times.size)
-        self.names = checked(names, [*start.histories, "time"], "names")
+        known = list(start.histories)
+        self.names = checked(names, known if "time" in problem.functions.names else [*known, "time"], "names")
 
     def run(self, x: Any) -> tuple[Array, Response | None]:
         """Histories (n_names, n_t), and the response that they are of; none if the simulation failed."""
         try:
-            response = self.problem.simulate(design(x), at=self.at)
-        except SimulationError:
-            if not self.nan:
+            response = self.problem.simulate(design(x), **self.when)
+        except (SimulationError, ValueError) as error:
+            # With fixed instants, the motion of another design than the start may end before the last of them.
+            failed = isinstance(error, SimulationError) or "at" in self.when
+            if not (self.nan and failed):
                 raise
             return np.full((len(self.names), self.instants), np.nan), None
-        rows = [response.times if name == "time" else response.histories[name] for name in self.names]
+        functions = self.problem.functions.names
+        rows = [response.histories[name] if name in functions else response.times for name in self.names]
         found = np.asarray(rows, dtype=np.float64).reshape(len(self.names), -1)
         if found.shape[1] != self.instants:
             raise ValueError(
                 f"histories: this design has {found.shape[1]} instants, that of the file {self.instants}; give the "
-                "instants by at"
+                "instants by at or fractions"
             )
         return found, response
 
     def pull_back(self, response: Response | None, weights: Any) -> Array:
         """Σ_k w_k dq(t_k)/dx (n_x,) for weights (n_names, n_t)."""
-        if response is None:
-            return np.full(self.inputs, np.nan)
         weights = np.asarray(weights, dtype=np.float64)
+        if response is None or not np.isfinite(weights).all():
+            return np.full(self.inputs, np.nan)
         together: dict[str, Array] = {}
         for name, row in zip(self.names, weights, strict=True):
             if row.any():

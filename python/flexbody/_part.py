@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import copy
 import difflib
 import functools
 import inspect
@@ -17,10 +18,10 @@ from typing import TYPE_CHECKING, Any, ParamSpec, TypeAlias, TypeVar, Union
 import numpy as np
 from numpy.typing import NDArray
 
-Real: TypeAlias = Union[float, "np.floating[Any]", "np.integer[Any]"]
-"""A finite number."""
-Integer: TypeAlias = Union[int, "np.integer[Any]"]
-"""A whole number."""
+Real: TypeAlias = Union[float, "np.floating[Any]", "np.integer[Any]", str]
+"""A finite number, or an expression of the machine's parameters such as `"= L/2"`."""
+Integer: TypeAlias = Union[int, "np.integer[Any]", str]
+"""A whole number, or an expression of parameters."""
 Vector: TypeAlias = Union[Sequence[Real], NDArray[Any]]
 """Finite numbers in a list, a tuple or an array of one dimension."""
 Matrix: TypeAlias = Union[Sequence[Vector], NDArray[Any]]
@@ -29,6 +30,7 @@ Matrix: TypeAlias = Union[Sequence[Vector], NDArray[Any]]
 P = ParamSpec("P")
 R = TypeVar("R")
 T = TypeVar("T", bound="Part")
+D = TypeVar("D", bound="Document")
 
 PACKAGE = os.path.dirname(os.path.abspath(__file__)) + os.sep
 
@@ -264,6 +266,10 @@ class Document:
         self._document = Part(given, call)
         self._calls: dict[tuple[str, ...], Call] = {}
         check_name(values["name"], "the name of the machine", call)
+
+    def __copy__(self: D) -> D:
+        """A document of its own: what is added to one is not in the other."""
+        return copy.deepcopy(self)
 
     def _add(self, key: str, what: str, name: object, value: object) -> Callable[..., str]:
         """Puts the value under a new name of the map at the key."""

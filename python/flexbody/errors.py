@@ -45,7 +45,10 @@ class ProblemError(FlexbodyError, ValueError):
             self.faults = []
             super().__init__(faults)
             return
-        self.faults = [Fault(*place, *what, hint, message) for place, what, hint, message in faults]
+        # A change of one run has the name of its argument here.
+        self.faults = [
+            Fault(*place, *what, hint, message.replace("--set ", "set ", 1)) for place, what, hint, message in faults
+        ]
         super().__init__("\n".join(fault.message for fault in self.faults))
 
     def without_lines(self) -> ProblemError:

@@ -74,15 +74,24 @@ def function(
 
 
 def histories(
-    problem: Problem, names: Sequence[str], at: ArrayLike | None = None, *, failures: str = "raise"
+    problem: Problem,
+    names: Sequence[str],
+    at: ArrayLike | None = None,
+    *,
+    fractions: ArrayLike | None = None,
+    failures: str = "raise",
 ) -> Callable[[Any], Any]:
     """A function x → histories (n_names, n_t) of the quantities behind functions of a problem.
 
-    `at` are the instants (n_t,) [s]; default those of the file. The name `"time"` stands for the instants themselves.
+    The instants (n_t,) are `at` [s], fixed whatever the design, or `fractions` of the duration of each design's motion,
+    with which they move; default those of the file, which move alike. The name `"time"` stands for the instants
+    themselves, unless a function has that name. A design whose motion ends before the last of `at` is a `ValueError`,
+    or NaN with `failures="nan"`.
+
     x is as for `function`. Derivatives are exact and in reverse only (`jax.grad`, `jax.vjp`, `jax.jacrev`): one adjoint
     march for a weight of all histories.
     """
-    layer = Histories(problem, names, at, failures)
+    layer = Histories(problem, names, at, fractions, failures)
     shape = jax.ShapeDtypeStruct((len(layer.names), layer.instants), np.float64)
     design_shape = jax.ShapeDtypeStruct((layer.inputs,), np.float64)
     known: OrderedDict[bytes, Any] = OrderedDict()

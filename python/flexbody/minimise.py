@@ -26,6 +26,28 @@ _REMEMBERED = 8
 _RENAMED = {"maxiter": "max_iterations", "maxfev": "max_evaluations"}
 """Options of SciPy and their names here."""
 
+_POSITIVE = ("tolerance", "constraint_tolerance", "finite_diff_rel_step")
+_COUNTS = {"max_iterations": 0, "max_evaluations": 0, "memory": 1, "dense_limit": 0}
+"""Options that are whole numbers, and the least of each."""
+_KNOWN = (
+    "method",
+    "tolerance",
+    "constraint_tolerance",
+    "max_iterations",
+    "maxiter",
+    "max_evaluations",
+    "maxfev",
+    "max_seconds",
+    "unbounded_below",
+    "scale_variables",
+    "memory",
+    "dense_limit",
+    "finite_diff_rel_step",
+    "disp",
+)
+
+_CENTRAL, _FORWARD = "3-point", "2-point"
+
 
 class OptimizeResult(dict[str, Any]):
     """A result: a dictionary whose entries are attributes too.
@@ -88,7 +110,7 @@ def minimise(
     Arguments are those of `scipy.optimize.minimize`. SciPy itself is not needed.
 
     - `fun(x, *args)`: the objective, a number, of an array (n,). With `jac=True` it returns the objective and its
-      gradient (n,); it is then called once for a point.
+      gradient (n,); it is then called once for a point. `args` that is no tuple is one argument.
     - `x0`: the start (n,). One outside of the bounds is moved inside.
     - `method`: `"interior_point"` (default), `"trust_region"` or `"auto"`.
     - `jac`: `jac(x, *args)`, the gradient (n,); or `True`; or differences: `"2-point"` (the default, `None`),
@@ -99,10 +121,11 @@ def minimise(
     - `constraints`: one or a sequence of dictionaries `{"type": "eq" or "ineq", "fun": …, "jac": …, "args": …,
       "name": …}`, where "ineq" means a value of at least zero and "name" is for verdicts; of objects with `fun`, `lb`,
       `ub`, `jac` as `scipy.optimize.NonlinearConstraint`; or with `A`, `lb`, `ub` as `LinearConstraint`. Their
-      Jacobians may be sparse matrices or arrays of SciPy, which stay sparse.
+      Jacobians may be sparse matrices or arrays of SciPy, which stay sparse. Without "jac" their derivatives are
+      central differences: with forward ones, constraints that contradict each other are not recognised.
     - `tol`: the tolerance, as the option of this name.
     - `callback`: after every iteration `callback(x)`, or `callback(intermediate_result=…)` with an `OptimizeResult` if
-      that is the name of its only parameter. The run stops if it returns `True` or raises `StopIteration`.
+      that is the name of its only parameter. The run stops if it returns a true value or raises `StopIteration`.
     - `options`: `tolerance`, `constraint_tolerance`, `max_iterations` (or `maxiter`), `max_evaluations` (or `maxfev`),
       `max_seconds`, `unbounded_below`, `scale_variables`, `memory`, `dense_limit`; `finite_diff_rel_step`, the relative
       step of differences; `disp`: print the verdict.
@@ -113,42 +136,63 @@ def minimise(
     """
     start = _start(x0)
     lower, upper = _bounds(bounds, start.size)
-    settings = _options(options, method, tol)
+    settings = checked_options(options, method, tol)
     relative_step = settings.pop("finite_diff_rel_step", None)
     shown = bool(settings.pop("disp", False))
-    _warn_of_hessians(hess, hessp)
+    for name, given in (("hess", hess), ("hessp", hessp)):
+        if given is not None:
+            warnings.warn(f"{name} is not used: second derivatives are approximated", RuntimeWarning, stacklevel=2)
     frame = _Frame(lower, upper, relative_step)
     if not callable(fun):
         raise TypeError(f"fun: expected a function of x, found {_kind(fun)}")
     objective = _Function("fun", "jac", fun, jac, _arguments(args), frame, size=1)
-    rows = [_constraint(label, item, frame) for label, item in _listed(constraints)]
+    rows = []
+    for label, item in _listed(constraints):
+        if np.any(getattr(item, "keep_feasible", False)):
+            what = f"{label}: keep_feasible is not used: constraints may be violated on the way, bounds never are"
+            warnings.warn(what, RuntimeWarning, stacklevel=2)
+        rows.append(_constraint(label, item, frame))
     inside = np.clip(start, lower, upper)
-    for row in rows:
-        row.measure(inside)
 
     def evaluate(x: Vector) -> tuple[float, Vector]:
         value = float(objective.value(x)[0])
-        return value, np.concatenate([row.function.value(x) for row in rows]) if rows else np.empty(0)
+        return value, np.concatenate([row.value(x) for row in rows]) if rows else np.empty(0)
 
     def gradients(x: Vector) -> tuple[Vector, Any]:
         slope = _dense(objective.jacobian(x)).reshape(-1)
         return slope, _stacked([row.function.jacobian(x) for row in rows], x.size)
 
-    found = _flexbody.minimise(
-        start,
-        lower,
-        upper,
-        np.concatenate([row.lower for row in rows]) if rows else np.empty(0),
-        np.concatenate([row.upper for row in rows]) if rows else np.empty(0),
-        [f"x[{i}]" for i in range(start.size)],
-        [name for row in rows for name in row.names()],
-        evaluate,
-        gradients,
-        _observer(callback, objective),
-        settings,
-    )
+    def run() -> dict[str, Any]:
+        for row in rows:
+            row.measure(inside)
+        return _flexbody.minimise(
+            start,
+            lower,
+            upper,
+            np.concatenate([row.lower for row in rows]) if rows else np.empty(0),
+            np.concatenate([row.upper for row in rows]) if rows else np.empty(0),
+            [f"x[{i}]" for i in range(start.size)],
+            [name for row in rows for name in row.names()],
+            evaluate,
+            gradients,
+            _observer(callback, objective),
+            settings,
+        )
+
+    while True:
+        try:
+            found = run()
+            break
+        except _OtherSize:
+            # A constraint without values at the start had them near it: now its number of rows is known.
+            continue
     result = from_core(found)
     result.nfev = objective.calls
+    if result.status == "inconsistent":
+        functions = (objective, *(row.function for row in rows))
+        differences = [own.jac_label for own in functions if own.jac in (_FORWARD, _CENTRAL)]
+        if differences:
+            _blame(result, differences)
     ends = np.cumsum([row.lower.size for row in rows])
     result.constraints = np.split(result.rows, ends[:-1]) if rows else []
     if shown:
@@ -166,9 +210,7 @@ class _Frame:
         self.lower, self.upper = lower, upper
         self.relative_step: float | None = None
         if relative_step is not None:
-            if not isinstance(relative_step, (int, float)) or not 0.0 < relative_step < 1.0:
-                raise ValueError(f"options: expected finite_diff_rel_step between 0 and 1, found {relative_step!r}")
-            self.relative_step = float(relative_step)
+            self.relative_step = _checked_option("finite_diff_rel_step", "finite_diff_rel_step", relative_step)
 
 
 class _Function:
@@ -185,7 +227,7 @@ class _Function:
         size: int | None,
     ) -> None:
         if jac is None or jac is False:
-            jac = "2-point"
+            jac = _FORWARD if size == 1 else _CENTRAL
         if isinstance(jac, str) and jac not in SCHEMES:
             raise ValueError(f'{jac_label}: expected a function, True, "2-point", "3-point" or "cs", found "{jac}"')
         if not (isinstance(jac, str) or jac is True or callable(jac)):
@@ -273,28 +315,40 @@ class _Constraint:
 
     def __init__(self, name: str, function: _Function, lower: Any, upper: Any) -> None:
         self.name, self.function = name, function
-        self.lower, self.upper = _limit(name, "lb", lower), _limit(name, "ub", upper)
+        self.given = {"lb": _limit(name, "lb", lower), "ub": _limit(name, "ub", upper)}
+        self.lower, self.upper = self.given["lb"], self.given["ub"]
         known = max(self.lower.size, self.upper.size)
         if function.size is None and known > 1:
             function.size = known
 
     def measure(self, x: Vector) -> None:
-        """Finds the number of rows, by an evaluation at x if it is not known."""
+        """Finds the number of rows, by an evaluation at x if it is not known. Without a value there it is taken for one,
+        until there is a value."""
         if self.function.size is None:
             try:
                 self.function.value(x)
             except (ArithmeticError, SimulationError):
-                self.function.size = 1
-        size = self.function.size or 0
-        for key, limit in (("lb", self.lower), ("ub", self.upper)):
+                pass
+        size = 1 if self.function.size is None else self.function.size
+        for key, limit in self.given.items():
             if limit.size not in (1, size):
                 raise ValueError(f"{self.name}: expected {size} numbers as {key}, found {limit.size}")
-        self.lower = np.array(np.broadcast_to(self.lower, size))
-        self.upper = np.array(np.broadcast_to(self.upper, size))
+        self.lower, self.upper = (np.array(np.broadcast_to(limit, size)) for limit in self.given.values())
+
+    def value(self, x: Vector) -> Vector:
+        """The values (m,) at x (n,)."""
+        values = self.function.value(x)
+        if values.size != self.lower.size:
+            raise _OtherSize
+        return values
 
     def names(self) -> list[str]:
         size = self.lower.size
         return [self.name] if size == 1 else [f"{self.name}[{j}]" for j in range(size)]
+
+
+class _OtherSize(Exception):
+    """A constraint has another number of rows than was assumed."""
 
 
 class _Rows:
@@ -434,7 +488,7 @@ def _limit(name: str, key: str, given: Any) -> Vector:
 
 
 def _arguments(args: Any) -> tuple[Any, ...]:
-    return args if isinstance(args, tuple) else tuple(args) if isinstance(args, list) else (args,)
+    return args if isinstance(args, tuple) else (args,)
 
 
 def _listed(constraints: Any) -> list[tuple[str, Any]]:
@@ -449,9 +503,6 @@ def _listed(constraints: Any) -> list[tuple[str, Any]]:
 
 
 def _constraint(label: str, item: Any, frame: _Frame) -> _Constraint:
-    if np.any(getattr(item, "keep_feasible", False)):
-        what = f"{label}: keep_feasible is not used: constraints may be violated on the way, bounds never are"
-        warnings.warn(what, RuntimeWarning, stacklevel=4)
     if isinstance(item, Mapping):
         return _of_dictionary(label, item, frame)
     if all(hasattr(item, key) for key in ("A", "lb", "ub")):
@@ -477,7 +528,8 @@ def _of_dictionary(label: str, item: Mapping[str, Any], frame: _Frame) -> _Const
         raise TypeError(f"{label}: expected a function as fun, found {_kind(item['fun'])}")
     upper = 0.0 if str(item["type"]).lower() == "eq" else np.inf
     name = str(item.get("name", label))
-    args = _arguments(item.get("args", ()))
+    args = item.get("args", ())
+    args = tuple(args) if isinstance(args, list) else _arguments(args)
     function = _Function(f"{name}: fun", f"{name}: jac", item["fun"], item.get("jac"), args, frame, size=None)
     return _Constraint(name, function, 0.0, upper)
 
@@ -503,27 +555,63 @@ def _linear(label: str, item: Any, frame: _Frame) -> _Constraint:
     return _Constraint(label, function, item.lb, item.ub)
 
 
-def _options(options: Mapping[str, Any] | None, method: Any, tol: Any) -> dict[str, Any]:
-    """The options under their names here."""
+def checked_options(options: Mapping[str, Any] | None, method: Any = None, tol: Any = None) -> dict[str, Any]:
+    """The options under their names here, without those that are `None`."""
     if options is None:
         options = {}
     if not isinstance(options, Mapping):
         raise TypeError(f"options: expected a dictionary, found {_kind(options)}")
-    settings = {_RENAMED.get(key, key): value for key, value in options.items()}
+    settings: dict[str, Any] = {}
+    for key, value in options.items():
+        if key not in _KNOWN:
+            raise ValueError(f"options: expected some of {', '.join(_KNOWN)}, found {key!r}")
+        name = _RENAMED.get(key, key)
+        if name in settings:
+            raise ValueError(f"options: found {name} twice, by both of its names")
+        if value is not None:
+            settings[name] = _checked_option(key, name, value)
     if method is not None:
         settings["method"] = method
     if settings.get("method", METHODS[0]) not in METHODS:
         known = ", ".join(f'"{name}"' for name in METHODS)
         raise ValueError(f"method: expected one of {known}, found {settings['method']!r}")
     if tol is not None:
-        settings.setdefault("tolerance", tol)
+        settings.setdefault("tolerance", _checked_option("tol", "tolerance", tol))
     return settings
 
 
-def _warn_of_hessians(hess: Any, hessp: Any) -> None:
-    for name, given in (("hess", hess), ("hessp", hessp)):
-        if given is not None:
-            warnings.warn(f"{name} is not used: second derivatives are approximated", RuntimeWarning, stacklevel=3)
+def _checked_option(key: str, name: str, value: Any) -> Any:
+    """The value of an option as the core takes it; `key` is what the caller calls it."""
+    is_flag = isinstance(value, (bool, np.bool_))
+    number = None if is_flag or not isinstance(value, (int, float, np.integer, np.floating)) else float(value)
+    if name in _COUNTS:
+        if is_flag or not isinstance(value, (int, np.integer)):
+            raise TypeError(f"options: expected a whole number as {key}, found {value!r}")
+        if value < _COUNTS[name]:
+            raise ValueError(f"options: expected {key} of at least {_COUNTS[name]}, found {value!r}")
+        return int(value)
+    if name in _POSITIVE or name in ("max_seconds", "unbounded_below"):
+        if number is None:
+            raise TypeError(f"options: expected a number as {key}, found {value!r}")
+        if name in _POSITIVE and not 0.0 < number < np.inf:
+            raise ValueError(f"options: expected a positive number as {key}, found {value!r}")
+        if name == "finite_diff_rel_step" and number >= 1.0:
+            raise ValueError(f"options: expected finite_diff_rel_step between 0 and 1, found {value!r}")
+        if name == "max_seconds" and not number >= 0.0:
+            raise ValueError(f"options: expected max_seconds of at least 0, found {value!r}")
+        if np.isnan(number):
+            raise ValueError(f"options: expected a number as {key}, found {value!r}")
+        return number
+    if name == "scale_variables" and not is_flag:
+        raise TypeError(f"options: expected True or False as {key}, found {value!r}")
+    return bool(value) if name in ("scale_variables", "disp") else value
+
+
+def _blame(result: OptimizeResult, differences: list[str]) -> None:
+    """Adds to the verdict that differences may be the cause of it."""
+    advice = f"; derivatives are differences, whose error may be the cause: give {', '.join(differences)}"
+    result.message += advice
+    result.verdict += advice
 
 
 def _observer(callback: Any, objective: _Function) -> Callable[[dict[str, Any]], bool] | None:
@@ -541,7 +629,7 @@ def _observer(callback: Any, objective: _Function) -> Callable[[dict[str, Any]],
         x = np.array(state["x"], dtype=np.float64)
         try:
             if not whole:
-                return _is_true(callback(x))
+                return bool(callback(x))
             intermediate = OptimizeResult(
                 x=x,
                 fun=state["objective"],
@@ -553,15 +641,11 @@ def _observer(callback: Any, objective: _Function) -> Callable[[dict[str, Any]],
                 step=state["step"],
                 rows=np.array(state["constraints"]),
             )
-            return _is_true(callback(intermediate_result=intermediate))
+            return bool(callback(intermediate_result=intermediate))
         except StopIteration:
             return True
 
     return observe
-
-
-def _is_true(returned: Any) -> bool:
-    return isinstance(returned, (bool, np.bool_)) and bool(returned)
 
 
 def from_core(found: Mapping[str, Any]) -> OptimizeResult:

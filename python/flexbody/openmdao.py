@@ -37,7 +37,7 @@ except ImportError as error:
 from . import _flexbody
 from ._names import Group, groups
 from .errors import SimulationError
-from .minimise import OptimizeResult, from_core
+from .minimise import OptimizeResult, checked_options, from_core
 
 if TYPE_CHECKING:
     from .problem import Problem
@@ -186,6 +186,10 @@ class FlexbodyComp(om.ExplicitComponent):  # type: ignore[misc,unused-ignore]
         variables, functions = self.problem.variables, self.problem.functions
         units = dict(zip(functions.names, functions.units, strict=True))
         names = self.function_names
+        if len(variables) == 0:
+            raise ValueError(f"FlexbodyComp: the problem {self.problem.name} has no variables, which are its inputs")
+        if not names:
+            raise ValueError(f"FlexbodyComp: no functions of {self.problem.name}, which are its outputs")
         for group in self._input_groups():
             first = group.positions[0]
             mixed = self.options["shapes"] == "vector"
@@ -287,7 +291,8 @@ class FlexbodyDriver(Driver):  # type: ignore[misc,unused-ignore]
     the model, with `success` 0 and a message where it failed.
 
     After a run `fail` tells whether it did not converge, `result.exit_status` the verdict in words, and `outcome` is
-    an `OptimizeResult` in scaled units of the driver. Options that are `None` have the defaults of `docs/optimiser.md`.
+    an `OptimizeResult` in scaled units of the driver. Scalers may be negative, other than for drivers of OpenMDAO 3.45
+    itself, which do not exchange the bounds then. Options that are `None` have the defaults of `docs/optimiser.md`.
     """
 
     def __init__(self, **options: Any) -> None:
@@ -311,8 +316,11 @@ class FlexbodyDriver(Driver):  # type: ignore[misc,unused-ignore]
             self.supports[kind] = False
         self.supports._read_only = True
         self.cite = ""
+        """Nothing to cite."""
         self.fail = False
+        """Whether the run did not converge."""
         self.outcome: OptimizeResult | None = None
+        """The result in scaled units of the driver, after a run."""
         self._total_jac_format = "array"
         self._model_ran = False
         self._last: bytes | None = None
@@ -391,7 +399,7 @@ class FlexbodyDriver(Driver):  # type: ignore[misc,unused-ignore]
             "unbounded_below",
             "scale_variables",
         )
-        return {name: self.options[name] for name in names if self.options[name] is not None}
+        return checked_options({name: self.options[name] for name in names})
 
     def _limits(self, kind: str, values: dict[str, Any]) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
         """Bounds of variables or constraints in the units of the driver."""
@@ -400,11 +408,15 @@ class FlexbodyDriver(Driver):  # type: ignore[misc,unused-ignore]
         upper: list[NDArray[np.float64]] = []
         for name, value in values.items():
             equals = scaled[name].equals if kind == "constraint" else None
-            for side, bound, none in ((lower, scaled[name].lower, -np.inf), (upper, scaled[name].upper, np.inf)):
-                bound = bound if equals is None else equals
-                given = none if bound is None else np.asarray(bound, dtype=np.float64)
-                full = np.broadcast_to(given, np.size(value)).astype(np.float64)
-                side.append(np.where(np.abs(full) >= 1e30, none, full))
+            below, above = (
+                _bound(bound if equals is None else equals, np.size(value))
+                for bound in (scaled[name].lower, scaled[name].upper)
+            )
+            scaler = self._autoscaler._var_meta[kind][name]["total_scaler"]
+            turned = np.less(1.0 if scaler is None else scaler, 0.0)
+            low, high = np.where(turned, above, below), np.where(turned, below, above)
+            lower.append(np.where(np.isnan(low), -np.inf, low))
+            upper.append(np.where(np.isnan(high), np.inf, high))
         return _flat(lower), _flat(upper)
 
     def _run_at(self, x: NDArray[np.float64], quiet: bool = False) -> None:
@@ -447,6 +459,12 @@ class FlexbodyDriver(Driver):  # type: ignore[misc,unused-ignore]
             raise ArithmeticError(str(error)) from error
         totals = np.array(totals, dtype=np.float64)
         return totals[0].copy(), np.ascontiguousarray(totals[1:])
+
+
+def _bound(given: Any, size: int) -> NDArray[np.float64]:
+    """A bound of OpenMDAO (size,), NaN where there is none."""
+    full = np.broadcast_to(np.nan if given is None else np.asarray(given, dtype=np.float64).reshape(-1), size)
+    return np.where(np.abs(full) >= 1e30, np.nan, full)
 
 
 def _flat(parts: list[NDArray[np.float64]]) -> NDArray[np.float64]:

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-import html
+import html as escapes
 import os
 
 __all__ = ["Page"]
@@ -10,6 +10,9 @@ __all__ = ["Page"]
 
 class Page:
     """A page of HTML that needs nothing else: the moving machine, its curves and its tables."""
+
+    html: str
+    """The text of the page."""
 
     def __init__(self, text: str) -> None:
         self.html = text
@@ -22,7 +25,7 @@ class Page:
 
     def _repr_html_(self) -> str:
         frame = 'width="100%" height="720" style="border: 0"'
-        return f'<iframe srcdoc="{html.escape(self.html, quote=True)}" {frame}></iframe>'
+        return f'<iframe srcdoc="{escapes.escape(self.html, quote=True)}" {frame}></iframe>'
 
     def __repr__(self) -> str:
         return f"<Page of {len(self.html) // 1024} kB: save(path) writes it, a notebook shows it>"

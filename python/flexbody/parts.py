@@ -3508,6 +3508,7 @@ class MachineKeys(Document):
         "description",
         "gravity",
         "input_tolerance",
+        "parameters",
         "bodies",
         "start",
         "initial_velocity",
@@ -3561,6 +3562,22 @@ class MachineKeys(Document):
                 gravity, loads and the inertia of the motions that the joints allow.
         """
         self._begin(locals())
+
+    @checked
+    def add_parameter(self, name: str, loads: Real) -> Name:
+        """Adds a parameter.
+
+        Numbers by name that expressions use: "= L/2" stands for a number anywhere in the file. Expressions have + − *
+        / ^, parentheses, pi, deg (a degree in radians), sin, cos, tan, asin, acos, atan, atan2, sqrt, exp, log, and
+        these names. A parameter may be an expression of others, and a design variable.
+
+        Parameters
+        ----------
+        name : text
+            Its name among the `parameters`.
+        loads : number
+        """
+        return Name(name, self._add("parameters", "parameter", name, loads))
 
     @checked
     def add_body(

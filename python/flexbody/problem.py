@@ -35,8 +35,8 @@ TOLERANCE = 1e-10
 class Variables:
     """Design variables in the order of the file. All arrays have the shape (n_x,)."""
 
-    names: list[str]
-    units: list[str]
+    names: tuple[str, ...]
+    units: tuple[str, ...]
     """Units of the numbers, such as `"kg"` or `"m"`."""
     lower: Vector
     """Lower bounds, −∞ if there is none."""
@@ -46,7 +46,7 @@ class Variables:
     """The design in the file."""
     scale: Vector
     """Typical changes, by which the optimiser divides."""
-    paths: list[list[str]]
+    paths: tuple[tuple[str, ...], ...]
     """JSON Pointers to the numbers that share the value of each variable."""
 
     def __len__(self) -> int:
@@ -57,8 +57,8 @@ class Variables:
 class Functions:
     """Functions of interest in the order of the file."""
 
-    names: list[str]
-    units: list[str]
+    names: tuple[str, ...]
+    units: tuple[str, ...]
 
     def __len__(self) -> int:
         return len(self.names)
@@ -87,15 +87,15 @@ class Constraint:
 
 @dataclass(frozen=True)
 class Evaluation:
-    """Values and gradients of functions at a design."""
+    """Values and gradients of functions at a design. `evaluation["range"]` is a value, `dict(evaluation)` has all by name."""
 
-    names: list[str]
+    names: tuple[str, ...]
     """Names of the functions, n_f."""
     values: Vector
     """Values, shape (n_f,)."""
     gradients: NDArray[np.float64]
     """Exact derivatives by the variables, shape (n_f, n_x)."""
-    variables: list[str]
+    variables: tuple[str, ...]
     """Names of the variables, n_x."""
 
     def __getitem__(self, name: str) -> float:
@@ -105,6 +105,10 @@ class Evaluation:
         """The derivatives of a function, by variable."""
         row = self.gradients[_index(name, self.names, "function")]
         return dict(zip(self.variables, row.tolist(), strict=True))
+
+    def keys(self) -> tuple[str, ...]:
+        """Names of the functions."""
+        return self.names
 
     def __iter__(self) -> Iterator[str]:
         return iter(self.names)
@@ -185,24 +189,29 @@ class Problem:
     simulated beside each other.
     """
 
+    variables: Variables
+    """Design variables."""
+    functions: Functions
+    """Functions of interest."""
     _core: _flexbody.Problem
 
-    def __init__(self, core: _flexbody.Problem) -> None:
+    def __init__(self, core: _flexbody.Problem, directory: Path | None = None) -> None:
         if not isinstance(core, _flexbody.Problem):
             raise TypeError("make a problem by Problem.from_file, Problem.from_dict or Machine.problem")
         self._core = core
+        self._directory = directory
         rows = core.variables
         self.variables = Variables(
-            names=[row[0] for row in rows],
-            units=[row[1] for row in rows],
+            names=tuple(row[0] for row in rows),
+            units=tuple(row[1] for row in rows),
             lower=_fixed([row[2] for row in rows]),
             upper=_fixed([row[3] for row in rows]),
             start=_fixed([row[4] for row in rows]),
             scale=_fixed([row[5] for row in rows]),
-            paths=[row[6] for row in rows],
+            paths=tuple(tuple(row[6]) for row in rows),
         )
         functions = core.functions
-        self.functions = Functions([name for name, _ in functions], [unit for _, unit in functions])
+        self.functions = Functions(tuple(name for name, _ in functions), tuple(unit for _, unit in functions))
 
     @classmethod
     def from_file(cls, path: str | os.PathLike[str], set: Mapping[str, object] | None = None) -> Problem:
@@ -220,7 +229,8 @@ class Problem:
         ProblemError
             All faults of the file, each with its line.
         """
-        return cls(_flexbody.Problem.load(os.fspath(path), _changes(set)))
+        file = Path(path)
+        return cls(_flexbody.Problem.load(os.fspath(file), _changes(set)), file.parent.absolute())
 
     @classmethod
     def from_dict(
@@ -249,14 +259,19 @@ class Problem:
             raise TypeError(f"found a document of type {type(document).__name__}, expected a mapping")
         try:
             text = json.dumps(document, default=_plain, allow_nan=False)
+            text.encode()
         except ValueError as error:
             raise ProblemError(f"the document holds what JSON does not have: {error}") from None
         name = document.get("name")
-        file = Path(directory or ".") / f"{name if isinstance(name, str) and name else 'problem'}.json"
+        place = Path(directory or ".").absolute()
+        name = name if isinstance(name, str) and name and "/" not in name and "\\" not in name else "problem"
         try:
-            return cls(_flexbody.Problem.parse(text, os.fspath(file), _changes(set)))
+            return cls(_flexbody.Problem.parse(text, os.fspath(place / f"{name}.json"), _changes(set)), place)
         except ProblemError as error:
             raise error.without_lines() from None
+
+    def __reduce__(self) -> tuple[Any, ...]:
+        return (_revived, (type(self), self._core.document, self._directory))
 
     def to_dict(self) -> dict[str, Any]:
         """The document of the problem, with its changes applied."""
@@ -264,9 +279,12 @@ class Problem:
         return document
 
     def to_file(self, path: str | os.PathLike[str]) -> None:
-        """Writes the problem file, whole or not at all."""
+        """Writes the problem file, whole or not at all. One that names files beside it stays in its folder."""
         from .machine import text, write
 
+        folder = Path(path).absolute().parent
+        if self._core.names_files and folder.resolve() != (self._directory or folder).resolve():
+            raise ValueError(f"the problem names files in {self._directory}: write it there, not to {folder}")
         write(path, text(self.to_dict()) + "\n")
 
     @property
@@ -306,9 +324,16 @@ class Problem:
         if isinstance(x, Mapping):
             all = self.variables.start.copy()
             for name, value in x.items():
-                all[_index(name, names, "variable")] = value
+                place = _index(name, names, "variable")
+                number = np.asarray(value)
+                if number.dtype.kind not in "iuf" or number.size != 1:
+                    raise TypeError(f"found {value!r} for the variable {name!r}, expected a real number")
+                all[place] = number.item()
             return all
-        array = np.asarray(x)
+        try:
+            array = np.asarray(x)
+        except ValueError:
+            raise ValueError(f"found a ragged design, expected {(len(names),)}: one number per variable") from None
         if array.dtype.kind not in "iuf":
             raise TypeError(f"found a design of type {array.dtype}, expected real numbers")
         if array.shape != (len(names),):
@@ -353,14 +378,16 @@ class Problem:
         """
         which = self._which(functions)
         values, gradients = self._core.evaluate(self.design(x), which, (True, True))
-        names = [self.functions.names[f] for f in which]
+        names = tuple(self.functions.names[f] for f in which)
         return Evaluation(names, values, gradients, self.variables.names)
 
     def forget_steps(self) -> None:
         """Chooses the time steps anew at the next design."""
         self._core.forget_steps()
 
-    def simulate(self, x: Design = None, at: ArrayLike | None = None) -> Response:
+    def simulate(
+        self, x: Design = None, at: ArrayLike | None = None, fractions: ArrayLike | None = None
+    ) -> Response:
         """Simulates a design: states, energies, reactions and histories over time.
 
         Parameters
@@ -368,17 +395,24 @@ class Problem:
         x
             The design.
         at
-            Instants in s between 0 and the end of the motion, shape (n_t,); default those of tables and figures. Between
-            the samples of the integration, polynomials of degree five give the values; `Response.history_error` says how
-            large their error is.
+            Fixed instants in s between 0 and the end of the motion, shape (n_t,); default those of tables and figures.
+            Between the samples of the integration, polynomials of degree five give the values; `Response.history_error`
+            says how large their error is.
+        fractions
+            Instants as fractions of the duration, from 0 to 1, instead of `at`. They move with the end where it depends
+            on the design, as the default instants do.
 
         Raises
         ------
         SimulationError
             The design cannot be simulated, or it has no motion.
+        ValueError
+            An instant is not inside the motion.
         """
-        times = None if at is None else _instants(at)
-        return Response(self, self._core.motion(self.design(x), times))
+        if at is not None and fractions is not None:
+            raise ValueError("found instants and fractions, expected one of both")
+        times, parts = (None if own is None else _instants(own) for own in (at, fractions))
+        return Response(self, self._core.motion(self.design(x), times, parts))
 
     def rest(self, x: Design = None) -> Rest | dict[str, State]:
         """What is at rest: the solved load cases of structures, or for a motion with `"start": "equilibrium"` the state
@@ -466,10 +500,14 @@ class Problem:
         ValueError
             There is nothing to optimise, or an argument makes no sense.
         """
+        if starts is not None and (isinstance(starts, bool) or not isinstance(starts, (int, np.integer)) or starts < 1):
+            raise ValueError(f"found {starts!r} starts, expected a whole number of at least 1")
+        if callback is not None and not callable(callback):
+            raise TypeError(f"found a callback of type {type(callback).__name__}, expected a function")
         if starts is not None and callback is not None:
             raise ValueError("found a callback and several starts, expected one of both")
         wanted = {
-            "starts": starts,
+            "starts": None if starts is None else int(starts),
             "directory": _path(directory),
             "resume": _path(resume),
             "certificate": certificate,
@@ -497,7 +535,7 @@ def _fixed(numbers: list[float]) -> Vector:
     return array
 
 
-def _index(name: str, names: Sequence[str], what: str) -> int:
+def _index(name: str, names: tuple[str, ...], what: str) -> int:
     """Where a name is in a list."""
     try:
         return names.index(name)
@@ -508,7 +546,16 @@ def _index(name: str, names: Sequence[str], what: str) -> int:
 
 
 def _path(path: str | os.PathLike[str] | None) -> str | None:
-    return None if path is None else os.fspath(path)
+    """A path as text."""
+    found = None if path is None else os.fspath(path)
+    if found is not None and not isinstance(found, str):
+        raise TypeError(f"found the path {found!r}, expected text or a pathlib.Path")
+    return found
+
+
+def _revived(kind: type[Problem], document: str, directory: Path | None) -> Problem:
+    """A problem from its document, for pickle: its steps are chosen anew."""
+    return kind.from_dict(json.loads(document), directory)
 
 
 def _plain(value: Any) -> Any:
@@ -518,9 +565,11 @@ def _plain(value: Any) -> Any:
     raise TypeError(f"found a value of type {type(value).__name__} in the document, expected what JSON has")
 
 
-def _changes(set: Mapping[str, object] | None) -> list[str]:
-    """Changes as the command line has them."""
-    return [f"{path}={json.dumps(value, default=_plain)}" for path, value in (set or {}).items()]
+def _changes(set: Mapping[str, object] | None) -> list[tuple[str, str]]:
+    """Changes as pairs of a JSON Pointer and JSON."""
+    if set is not None and not isinstance(set, Mapping):
+        raise TypeError(f"found changes of type {type(set).__name__}, expected a mapping of paths to values")
+    return [(path, json.dumps(value, default=_plain, allow_nan=False)) for path, value in (set or {}).items()]
 
 
 def _instants(at: ArrayLike) -> Vector:

@@ -1,7 +1,9 @@
 """pyOptSparse: a problem as its `Optimization`.
 
-    task, sens = optimization(problem)
-    found = pyoptsparse.OPT("IPOPT")(task, sens=sens)
+```python
+task, sens = optimization(problem)
+found = pyoptsparse.OPT("IPOPT")(task, sens=sens)
+```
 """
 
 from __future__ import annotations

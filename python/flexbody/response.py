@@ -75,16 +75,16 @@ class Histories(Mapping[str, Array]):
     """By function: the quantity behind it at every instant, shape (n_t,). Functions that reduce no quantity, such as a
     duration or a mass, have none."""
 
-    def __init__(self, response: Response) -> None:
-        self._response = response
+    def __init__(self, core: _flexbody.Motion, names: Sequence[str]) -> None:
+        self._core = core
+        self._names = names
         self._known: dict[str, tuple[Array, float] | None] = {}
 
     def _find(self, name: str) -> tuple[Array, float] | None:
-        names = self._response.problem.functions.names
-        if name not in names:
+        if name not in self._names:
             return None
         if name not in self._known:
-            self._known[name] = self._response._core.history(names.index(name))
+            self._known[name] = self._core.history(self._names.index(name))
         return self._known[name]
 
     def __getitem__(self, name: str) -> Array:
@@ -94,8 +94,14 @@ class Histories(Mapping[str, Array]):
             raise KeyError(f"found no history of {name!r}, expected one of: {there}")
         return found[0]
 
+    def error(self, name: str) -> float:
+        """Largest estimated error of a history by the polynomials between samples; zero at samples."""
+        self[name]
+        found = self._find(name)
+        return 0.0 if found is None else found[1]
+
     def __iter__(self) -> Iterator[str]:
-        return (name for name in self._response.problem.functions.names if self._find(name) is not None)
+        return (name for name in self._names if self._find(name) is not None)
 
     def __len__(self) -> int:
         return sum(1 for _ in self)
@@ -104,13 +110,18 @@ class Histories(Mapping[str, Array]):
 class Response:
     """The motion of a design at n_t instants."""
 
+    problem: Problem
+    """The problem."""
+    times: Array
+    """Instants in s, shape (n_t,)."""
+    histories: Histories
+    """By function: the quantity behind it at every instant, shape (n_t,)."""
+
     def __init__(self, problem: Problem, core: _flexbody.Motion) -> None:
         self.problem = problem
         self._core = core
-        self.times: Array = core.times()
-        """Instants in s, shape (n_t,)."""
-        self.histories = Histories(self)
-        """By function: the quantity behind it at every instant, shape (n_t,)."""
+        self.times = core.times()
+        self.histories = Histories(core, problem.functions.names)
 
     @property
     def duration(self) -> float:
@@ -140,9 +151,7 @@ class Response:
 
     def history_error(self, name: str) -> float:
         """Largest estimated error of a history by the polynomials between samples; zero at samples."""
-        self.histories[name]
-        found = self.histories._find(name)
-        return 0.0 if found is None else found[1]
+        return self.histories.error(name)
 
     @cached_property
     def body_names(self) -> list[str]:
@@ -205,9 +214,9 @@ class Response:
         Parameters
         ----------
         cotangents
-            By function of the file: ∂F/∂g(t_k) of the quantity g behind it, shape (n_t,). The key `"time"` has those by
-            the instants themselves, which matter only where the duration depends on the design: instants keep their
-            fraction of it.
+            By function of the file: ∂F/∂g(t_k) of the quantity g behind it, shape (n_t,). Instants of `at` are fixed.
+            Others keep their fraction of the duration: where that depends on the design, the key `"time"` (unless a
+            function has this name) has the derivatives by the instants themselves.
 
         Returns
         -------
@@ -230,6 +239,8 @@ class Response:
                 what = f"{array.dtype} of shape {array.shape}"
                 raise ValueError(f"found the cotangent {what} of {name!r}, expected numbers of shape {self.times.shape}")
             weights = np.ascontiguousarray(array, dtype=np.float64)
+            if not np.isfinite(weights).all():
+                raise ValueError(f"found a cotangent of {name!r} that is not finite")
             if name in names:
                 functions.append((names.index(name), weights))
             elif name == TIME:
@@ -253,7 +264,9 @@ class Response:
                 ("angular velocity", body.angular_velocity, "xyz"),
             ):
                 for k, axis in enumerate(axes):
-                    columns[f"{name}: {what}{'' if what == 'p' else ' '}{axis}"] = values[:, k]
+                    column = f"{name}: {what}{'' if what == 'p' else ' '}{axis}"
+                    # A function may have this name.
+                    columns[f"body {column}" if column in columns else column] = values[:, k]
         return frame(columns, ("time [s]", self.times))
 
     def __repr__(self) -> str:

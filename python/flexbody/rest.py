@@ -34,15 +34,20 @@ class Case:
 class Rest:
     """Structures at rest under load cases."""
 
+    x: Array
+    """The design, shape (n_x,)."""
+    nodes: Array
+    """Places of the nodes in m, shape (n, 3)."""
+    cases: dict[str, Case]
+    """The load cases by name."""
+
     def __init__(
         self, problem: Problem, x: Array, nodes: Array, cases: Sequence[tuple[str, Array, Array, Array, Array]]
     ) -> None:
         self.problem = problem
         self.x = x
         self.nodes = nodes
-        """Places of the nodes in m, shape (n, 3)."""
         self.cases = {name: Case(*arrays) for name, *arrays in cases}
-        """The load cases by name."""
 
     @property
     def values(self) -> Array:
@@ -56,13 +61,17 @@ class Rest:
 class Modes:
     """The lowest modes of structures of n nodes."""
 
+    frequencies: Array
+    """Natural frequencies in Hz, ascending, without those of rigid motions."""
+    shapes: Array
+    """Displacements of the nodes in each mode for a modal mass of one, shape (number of modes, n, 3)."""
+    rigid: int
+    """Number of rigid motions, whose frequencies are zero."""
+
     def __init__(self, frequencies: Array, shapes: list[Array], rigid: int) -> None:
         self.frequencies = frequencies
-        """Natural frequencies in Hz, ascending, without those of rigid motions."""
         self.shapes = np.array(shapes)
-        """Displacements of the nodes in each mode for a modal mass of one, shape (number of modes, n, 3)."""
         self.rigid = rigid
-        """Number of rigid motions, whose frequencies are zero."""
 
     def __len__(self) -> int:
         return len(self.frequencies)

@@ -41,8 +41,10 @@ class History:
     """Designs, shape (n, n_x)."""
     constraints: Array
     """Values of the constraints, shape (n, n_c)."""
-    variable_names: list[str]
-    constraint_names: list[str]
+    variable_names: tuple[str, ...]
+    """Names of the variables."""
+    constraint_names: tuple[str, ...]
+    """Names of the constraints."""
 
     def __len__(self) -> int:
         return len(self.iterations)
@@ -78,15 +80,23 @@ class FoundOptimum:
 class Result:
     """The end of an optimisation. `save` writes it as the command does; a notebook shows its summary."""
 
+    problem: Problem
+    """The problem."""
+    x: Array
+    """The design, shape (n_x,)."""
+    objective: float
+    """The objective in the user's sense."""
+    status: str
+    """How the run ended: a word such as `"converged"`."""
+    message: str
+    """How the run ended: a sentence."""
+
     def __init__(self, problem: Problem, core: _flexbody.Optimum) -> None:
         self.problem = problem
         self._core = core
-        self.x: Array = core.design()
-        """The design, shape (n_x,)."""
-        self.objective: float = core.objective
-        """The objective in the user's sense."""
+        self.x = core.design()
+        self.objective = core.objective
         self.status, self.message = core.status
-        """How the run ended: a word such as `"converged"`, and a sentence."""
 
     @property
     def converged(self) -> bool:
@@ -159,7 +169,7 @@ class Result:
         """The iterations."""
         counts, columns, designs, constraints = self._core.history()
         both = np.array(counts, dtype=np.int64).reshape(-1, 2)
-        names = (self.problem.variables.names, [own.name for own in self.problem.constraints])
+        names = (self.problem.variables.names, tuple(own.name for own in self.problem.constraints))
         objective, infeasibility, optimality = (columns[:, k].copy() for k in range(3))
         return History(
             both[:, 0], both[:, 1], objective, infeasibility, optimality, designs, constraints, *names

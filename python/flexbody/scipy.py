@@ -33,9 +33,13 @@ class Scaled:
         if problem.objective is None:
             raise ValueError(f"{problem.name}: the problem has no objective")
         self.problem = problem
+        """The problem."""
         self.scale = scales(problem)
+        """Sizes (n_x,) of the variables, in the units of the file."""
         self.names = needed(problem)
+        """The function of the objective, then those of constraints."""
         self.sign = -1.0 if problem.objective.sense == "maximise" else 1.0
+        """−1 if the file maximises, else 1."""
         self._last: tuple[bytes, Array, Array] | None = None
 
     def design(self, scaled: Any) -> Array:

@@ -4,7 +4,8 @@ Simulations compute in double precision, and a design of `torch.float32` is refu
 follows: write `x.double()`, as for the output of a network in single precision. Gradients arrive in the type of what
 `double()` was called for.
 
-Designs may be batches (…, n_x): they are simulated one after the other. Layers have first derivatives only. They run on
+Designs may be batches (…, n_x): they are simulated one after the other. Layers have first derivatives only,
+by `backward` and `torch.autograd`; the transforms of `torch.func` (`grad`, `vmap`, …) are not supported. They run on
 the processor; results are on the device of x.
 
 A failed simulation raises `SimulationError`. With `failures="nan"` values and gradients of such a design are NaN
@@ -49,14 +50,23 @@ def function(
 
 
 def histories(
-    problem: Problem, names: Sequence[str], at: ArrayLike | None = None, *, failures: str = "raise"
+    problem: Problem,
+    names: Sequence[str],
+    at: ArrayLike | None = None,
+    *,
+    fractions: ArrayLike | None = None,
+    failures: str = "raise",
 ) -> Callable[[Any], Any]:
     """A function x → histories (…, n_names, n_t) of the quantities behind functions of a problem.
 
-    `at` are the instants (n_t,) [s]; default those of the file. The name `"time"` stands for the instants themselves.
+    The instants (n_t,) are `at` [s], fixed whatever the design, or `fractions` of the duration of each design's motion,
+    with which they move; default those of the file, which move alike. The name `"time"` stands for the instants
+    themselves, unless a function has that name. A design whose motion ends before the last of `at` is a `ValueError`,
+    or NaN with `failures="nan"`.
+
     x is as for `function`. Gradients are exact: one adjoint march for a weight of all histories of a design.
     """
-    layer = Histories(problem, names, at, failures)
+    layer = Histories(problem, names, at, fractions, failures)
 
     def differentiable(x: Any) -> Any:
         return _Histories.apply(_design(problem, x), layer)
@@ -77,7 +87,8 @@ class _Values(torch.autograd.Function):  # type: ignore[misc,unused-ignore]
             values = [value for value, _ in found]
         else:
             values = [layer.values(row) for row in designs]
-        return torch.as_tensor(_stack(values, len(layer.names)), device=x.device).reshape(*x.shape[:-1], -1)
+        stacked = torch.as_tensor(_stack(values, len(layer.names)), device=x.device)
+        return stacked.reshape(*x.shape[:-1], len(layer.names))
 
     @staticmethod
     def backward(ctx: Any, weights: Any) -> Any:

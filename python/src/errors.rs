@@ -41,7 +41,8 @@ pub(crate) fn internal(py: Python<'_>, what: &str) -> PyErr {
 pub(crate) fn optimisation(py: Python<'_>, error: OptimisationError) -> PyErr {
     let text = error.to_string();
     match error {
-        OptimisationError::Input(_) => PyValueError::new_err(text),
+        // Options of the command line are arguments here.
+        OptimisationError::Input(_) => PyValueError::new_err(text.replace("--", "")),
         OptimisationError::Undefined(_) => of_package(py, "SimulationError", text),
         OptimisationError::Interrupted => PyKeyboardInterrupt::new_err(text),
         OptimisationError::File(_) | OptimisationError::Page(_) => PyOSError::new_err(text),
@@ -51,4 +52,9 @@ pub(crate) fn optimisation(py: Python<'_>, error: OptimisationError) -> PyErr {
 /// A design whose values or gradients mean nothing.
 pub(crate) fn undefined(py: Python<'_>, why: &str) -> PyErr {
     of_package(py, "SimulationError", why)
+}
+
+/// An end by a signal.
+pub(crate) fn interrupted() -> PyErr {
+    PyKeyboardInterrupt::new_err("interrupted")
 }

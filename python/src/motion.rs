@@ -1,12 +1,13 @@
 //! A motion for Python.
 
 use crate::arrays::{Array, Matrix, array, matrix, numbers};
-use crate::errors::simulation;
-use crate::run::run;
-use flexbody::{Cotangents, Interrupt};
+use crate::errors::{simulation, undefined};
+use crate::run::{Stop, run};
+use flexbody::{Cotangents, SimulationError};
 use numpy::PyReadonlyArray1;
 use pyo3::prelude::*;
-use std::sync::Arc;
+use std::collections::BTreeSet;
+use std::sync::{Arc, Mutex, PoisonError};
 
 /// A simulated design.
 #[pyclass(frozen, module = "flexbody._flexbody")]
@@ -14,8 +15,13 @@ pub(crate) struct Motion {
     motion: Arc<flexbody::Motion>,
     variables: usize,
     functions: usize,
-    interrupt: Interrupt,
+    /// The functions whose derivatives the steps are known to resolve.
+    judged: Judged,
+    stop: Stop,
 }
+
+/// Functions of a problem whose derivatives the steps in use are known to resolve.
+pub(crate) type Judged = Arc<Mutex<BTreeSet<usize>>>;
 
 /// By function: its index and the weights of its quantity; and the weights of the instants.
 type Weights<'py> = (
@@ -27,13 +33,26 @@ impl Motion {
     pub(crate) fn new(
         motion: flexbody::Motion,
         problem: &flexbody::Problem,
-        interrupt: &Interrupt,
+        (judged, stop): (&Judged, &Stop),
     ) -> Self {
         Self {
             motion: Arc::new(motion),
             variables: problem.variables().len(),
             functions: problem.functions().len(),
-            interrupt: interrupt.clone(),
+            judged: judged.clone(),
+            stop: stop.clone(),
+        }
+    }
+
+    /// Rows of derivatives that mean something.
+    fn resolved<'py>(
+        &self,
+        py: Python<'py>,
+        found: Result<(Vec<Vec<f64>>, Option<String>), SimulationError>,
+    ) -> PyResult<Matrix<'py>> {
+        match found.map_err(|error| simulation(py, &error))? {
+            (_, Some(why)) => Err(undefined(py, &why)),
+            (rows, None) => matrix(py, &rows, self.variables),
         }
     }
 
@@ -43,8 +62,30 @@ impl Motion {
         work: impl FnOnce(&flexbody::Motion) -> T + Send + 'static,
     ) -> PyResult<T> {
         let motion = self.motion.clone();
-        run(py, &self.interrupt, move || work(&motion))
+        run(py, &self.stop, move || work(&motion))
     }
+}
+
+/// Why derivatives of the functions `which` mean nothing, if so; each is judged once.
+fn unresolved(
+    motion: &flexbody::Motion,
+    judged: &Judged,
+    which: impl Iterator<Item = usize>,
+) -> Result<Option<String>, SimulationError> {
+    let known = judged
+        .lock()
+        .unwrap_or_else(PoisonError::into_inner)
+        .clone();
+    let open: Vec<usize> = which.filter(|f| !known.contains(f)).collect();
+    if open.is_empty() {
+        return Ok(None);
+    }
+    let why = motion.unresolved(&open)?;
+    if why.is_none() {
+        let mut judged = judged.lock().unwrap_or_else(PoisonError::into_inner);
+        judged.extend(open);
+    }
+    Ok(why)
 }
 
 #[pymethods]
@@ -82,9 +123,12 @@ impl Motion {
 
     fn gradients<'py>(&self, py: Python<'py>) -> PyResult<Matrix<'py>> {
         let which: Vec<usize> = (0..self.functions).collect();
-        let found = self.with(py, move |motion| motion.gradients(&which))?;
-        let rows = found.map_err(|error| simulation(py, &error))?;
-        matrix(py, &rows, self.variables)
+        let judged = self.judged.clone();
+        let found = self.with(py, move |motion| {
+            let why = unresolved(motion, &judged, which.iter().copied())?;
+            Ok((motion.gradients(&which)?, why))
+        })?;
+        self.resolved(py, found)
     }
 
     /// Values and the estimated error between samples; `None` for functions without a history.
@@ -106,9 +150,15 @@ impl Motion {
             times: times.as_ref().map(numbers).unwrap_or_default(),
         };
         let all: Vec<Cotangents> = all.iter().map(cotangents).collect();
-        let found = self.with(py, move |motion| motion.pull_back(&all))?;
-        let rows = found.map_err(|error| simulation(py, &error))?;
-        matrix(py, &rows, self.variables)
+        let judged = self.judged.clone();
+        let found = self.with(py, move |motion| {
+            let which = all
+                .iter()
+                .flat_map(|own| own.functions.iter().map(|(f, _)| *f));
+            let rows = motion.pull_back(&all)?;
+            Ok((rows, unresolved(motion, &judged, which)?))
+        })?;
+        self.resolved(py, found)
     }
 
     fn bodies(&self, py: Python<'_>) -> PyResult<Vec<String>> {

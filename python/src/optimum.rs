@@ -1,14 +1,15 @@
 //! An optimisation of a problem for Python.
 
 use crate::arrays::{Array, Matrix, array, matrix};
-use crate::errors::optimisation;
-use crate::run::{run, start, wait};
-use flexbody::{Interrupt, Iteration, OptimisationOptions};
+use crate::errors::{interrupted, optimisation};
+use crate::run::{Stop, run, start};
+use flexbody::{Iteration, OptimisationOptions};
 
 use pyo3::prelude::*;
 use pyo3::types::PyDict;
 use std::ops::ControlFlow;
 use std::path::PathBuf;
+use std::sync::atomic::{AtomicBool, Ordering};
 use std::sync::mpsc::{Sender, channel};
 use std::sync::{Arc, Mutex, PoisonError};
 
@@ -28,7 +29,7 @@ pub(crate) struct Optimum {
     optimum: Arc<Mutex<flexbody::Optimum>>,
     variables: usize,
     constraints: usize,
-    interrupt: Interrupt,
+    stop: Stop,
 }
 
 /// An iteration, and where the answer of the callback is awaited: whether the run goes on.
@@ -50,11 +51,11 @@ fn row<'py>(py: Python<'py>, own: Iteration) -> PyResult<Bound<'py, PyDict>> {
 /// Optimises a problem. The callback is called with every iteration on the thread of the caller.
 pub(crate) fn optimise(
     py: Python<'_>,
-    (problem, interrupt): (&Arc<flexbody::Problem>, &Interrupt),
+    (problem, stop): (&Arc<flexbody::Problem>, &Stop),
     file: Option<PathBuf>,
     (callback, wanted): (Option<Py<PyAny>>, Wanted),
 ) -> PyResult<Optimum> {
-    let (own, stop) = (problem.clone(), interrupt.clone());
+    let (own, asked) = (problem.clone(), stop.clone());
     let asks = callback.is_some();
     let work = move |tell: &dyn Fn(Asked)| {
         let options = OptimisationOptions {
@@ -64,6 +65,7 @@ pub(crate) fn optimise(
             certificate: wanted.certificate,
             file: file.as_deref(),
         };
+        let ended = AtomicBool::new(false);
         let mut progress = |iteration: Iteration| {
             if !asks {
                 return ControlFlow::Continue(());
@@ -72,15 +74,19 @@ pub(crate) fn optimise(
             tell((iteration, answer));
             match answered.recv() {
                 Ok(true) => ControlFlow::Continue(()),
+                Ok(false) => ControlFlow::Break(()),
                 // Without an answer the caller has given up.
-                Ok(false) | Err(_) => ControlFlow::Break(()),
+                Err(_) => {
+                    ended.store(true, Ordering::Relaxed);
+                    ControlFlow::Break(())
+                }
             }
         };
-        let stopped = || stop.has_stopped();
-        flexbody::optimise_with(&own, &options, &stopped, &mut progress)
+        let stopped = || asked.has_come() || ended.load(Ordering::Relaxed);
+        let found = flexbody::optimise_with(&own, &options, &stopped, &mut progress);
+        (found, asked.has_come())
     };
-    let receiver = start(py, interrupt, work)?;
-    let found = wait(py, interrupt, receiver, |(iteration, answer): Asked| {
+    let (found, was_stopped) = start(py, stop, work)?.wait(py, |(iteration, answer): Asked| {
         let Some(callback) = &callback else {
             return Ok(());
         };
@@ -90,12 +96,16 @@ pub(crate) fn optimise(
         let _ = answer.send(!stops);
         Ok(())
     })?;
+    // A signal to another thread ends what it interrupts everywhere.
+    if was_stopped {
+        return Err(interrupted());
+    }
     let optimum = found.map_err(|error| optimisation(py, error))?;
     Ok(Optimum {
         optimum: Arc::new(Mutex::new(optimum)),
         variables: problem.variables().len(),
         constraints: problem.constraints.len(),
-        interrupt: interrupt.clone(),
+        stop: stop.clone(),
     })
 }
 
@@ -164,7 +174,7 @@ impl Optimum {
 
     fn page(&self, py: Python<'_>, by: String) -> PyResult<String> {
         let optimum = self.optimum.clone();
-        let made = run(py, &self.interrupt, move || {
+        let made = run(py, &self.stop, move || {
             let optimum = optimum.lock().unwrap_or_else(PoisonError::into_inner);
             optimum.page(&by)
         })?;
@@ -179,7 +189,7 @@ impl Optimum {
         page: Option<String>,
     ) -> PyResult<Vec<String>> {
         let optimum = self.optimum.clone();
-        let saved = run(py, &self.interrupt, move || {
+        let saved = run(py, &self.stop, move || {
             let mut optimum = optimum.lock().unwrap_or_else(PoisonError::into_inner);
             optimum.save(&directory, page.as_deref())
         })?;

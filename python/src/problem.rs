@@ -1,11 +1,11 @@
 //! A problem for Python.
 
 use crate::arrays::{Array, Matrix, array, matrix, numbers};
-use crate::errors::{faults, optimisation, simulation};
-use crate::motion::Motion;
+use crate::errors::{faults, interrupted, optimisation, simulation};
+use crate::motion::{Judged, Motion};
 use crate::optimum::{Optimum, Wanted, optimise};
-use crate::run::run;
-use flexbody::{Analysis, Design, Interrupt, Override, Sense, SimulationError};
+use crate::run::{Stop, run};
+use flexbody::{Analysis, Design, Override, Sense, SimulationError};
 use numpy::PyReadonlyArray1;
 use pyo3::exceptions::PyValueError;
 use pyo3::prelude::*;
@@ -16,8 +16,9 @@ use std::sync::{Arc, Mutex, PoisonError};
 #[pyclass(frozen, module = "flexbody._flexbody")]
 pub(crate) struct Problem {
     problem: Arc<flexbody::Problem>,
-    session: Arc<Mutex<Session>>,
-    interrupt: Interrupt,
+    /// The process that it belongs to: a forked one may inherit it locked, and gets another.
+    session: Mutex<(u32, Arc<Mutex<Session>>)>,
+    stop: Stop,
     file: Option<PathBuf>,
 }
 
@@ -26,8 +27,7 @@ pub(crate) struct Problem {
 struct Session {
     analysis: Option<Analysis>,
     last: Option<(Vec<u64>, Design)>,
-    /// Whether gradients on these steps were judged.
-    judged: bool,
+    judged: Judged,
 }
 
 type Rows = Vec<Vec<f64>>;
@@ -67,7 +67,11 @@ impl Session {
         (x, which): (&[f64], &[usize]),
         wanted: [bool; 2],
     ) -> Result<Result<(Vec<f64>, Rows), SimulationError>, String> {
-        let judged = self.judged;
+        let known = self
+            .judged
+            .lock()
+            .unwrap_or_else(PoisonError::into_inner)
+            .clone();
         let design = match self.design(problem, x) {
             Ok(design) => design,
             Err(error) => return Ok(Err(error)),
@@ -81,11 +85,15 @@ impl Session {
             false => Ok(Vec::new()),
         };
         let both = values.and_then(|values| Ok((values, gradients?)));
-        if let (true, false, Ok((_, gradients))) = (wanted[1], judged, &both) {
-            if let Some(why) = design.unresolved(which, gradients) {
+        if let (true, Ok((_, gradients))) = (wanted[1], &both) {
+            let open = which.iter().zip(gradients);
+            let open = open.filter(|(f, _)| !known.contains(f));
+            let (open, rows): (Vec<usize>, Rows) = open.map(|(f, row)| (*f, row.clone())).unzip();
+            if let (false, Some(why)) = (open.is_empty(), design.unresolved(&open, &rows)) {
                 return Err(why);
             }
-            self.judged = true;
+            let mut judged = self.judged.lock().unwrap_or_else(PoisonError::into_inner);
+            judged.extend(open);
         }
         Ok(both)
     }
@@ -93,14 +101,27 @@ impl Session {
 
 impl Problem {
     fn new(mut problem: flexbody::Problem, file: Option<PathBuf>) -> Self {
-        let interrupt = Interrupt::new();
-        interrupt.attach(&mut problem);
+        let stop = Stop::default();
+        stop.interrupt.attach(&mut problem);
         Self {
             problem: Arc::new(problem),
-            session: Arc::default(),
-            interrupt,
+            session: Mutex::new((std::process::id(), Arc::default())),
+            stop,
             file,
         }
+    }
+
+    /// The session of this process.
+    fn session(&self) -> Arc<Mutex<Session>> {
+        let mut own = self.session.lock().unwrap_or_else(PoisonError::into_inner);
+        let process = std::process::id();
+        if own.0 != process {
+            let parents = std::mem::replace(&mut *own, (process, Arc::default()));
+            // Nobody unlocks it here.
+            std::mem::forget(parents);
+            self.stop.forget_calls();
+        }
+        own.1.clone()
     }
 
     /// The numbers of a design.
@@ -130,8 +151,8 @@ impl Problem {
         py: Python<'_>,
         work: impl FnOnce(&mut Session, &flexbody::Problem) -> T + Send + 'static,
     ) -> PyResult<T> {
-        let (session, problem) = (self.session.clone(), self.problem.clone());
-        run(py, &self.interrupt, move || {
+        let (session, problem) = (self.session(), self.problem.clone());
+        self.uninterrupted(py, move || {
             let mut session = session.lock().unwrap_or_else(PoisonError::into_inner);
             work(&mut session, &problem)
         })
@@ -144,24 +165,50 @@ impl Problem {
         work: impl FnOnce(&flexbody::Problem) -> T + Send + 'static,
     ) -> PyResult<T> {
         let problem = self.problem.clone();
-        run(py, &self.interrupt, move || work(&problem))
+        self.uninterrupted(py, move || work(&problem))
+    }
+
+    /// Does `work` on a thread of the package. If a signal to another thread ended it, it is raised here, too.
+    fn uninterrupted<T: Send + 'static>(
+        &self,
+        py: Python<'_>,
+        work: impl FnOnce() -> T + Send + 'static,
+    ) -> PyResult<T> {
+        let stop = self.stop.clone();
+        let (found, stopped) = run(py, &self.stop, move || {
+            let found = work();
+            (found, stop.has_come())
+        })?;
+        match stopped {
+            true => Err(interrupted()),
+            false => Ok(found),
+        }
     }
 }
 
-fn overrides(texts: Vec<String>) -> PyResult<Vec<Override>> {
-    let all = texts.iter().map(|text| Override::parse(text));
-    let all: Result<_, _> = all.collect();
-    all.map_err(|error| PyValueError::new_err(error.to_string()))
+/// Changes of a document: pairs of a JSON Pointer and JSON.
+fn overrides(pairs: Vec<(String, String)>) -> PyResult<Vec<Override>> {
+    let one = |(path, text): (String, String)| {
+        if !path.starts_with('/') {
+            return Err(PyValueError::new_err(format!(
+                "found the path {path:?}, expected a JSON Pointer such as /bodies/arm/mass"
+            )));
+        }
+        let value = serde_json::from_str(&text);
+        let value = value.map_err(|error| PyValueError::new_err(error.to_string()))?;
+        Ok(Override { path, value })
+    };
+    pairs.into_iter().map(one).collect()
 }
 
 #[pymethods]
 impl Problem {
     #[staticmethod]
-    fn load(py: Python<'_>, path: PathBuf, changes: Vec<String>) -> PyResult<Self> {
+    fn load(py: Python<'_>, path: PathBuf, changes: Vec<(String, String)>) -> PyResult<Self> {
         let changes = overrides(changes)?;
         let own = path.clone();
         let read = move || flexbody::Problem::load(&own, &changes);
-        match run(py, &Interrupt::new(), read)? {
+        match run(py, &Stop::default(), read)? {
             Ok(problem) => Ok(Self::new(problem, Some(path))),
             Err(wrong) => Err(faults(py, &wrong)),
         }
@@ -169,11 +216,16 @@ impl Problem {
 
     /// `file` stands for the text in faults, and files that it names lie beside it.
     #[staticmethod]
-    fn parse(py: Python<'_>, text: String, file: PathBuf, changes: Vec<String>) -> PyResult<Self> {
+    fn parse(
+        py: Python<'_>,
+        text: String,
+        file: PathBuf,
+        changes: Vec<(String, String)>,
+    ) -> PyResult<Self> {
         let changes = overrides(changes)?;
         let own = file.clone();
         let read = move || flexbody::Problem::parse(&text, &own.display().to_string(), &changes);
-        match run(py, &Interrupt::new(), read)? {
+        match run(py, &Stop::default(), read)? {
             Ok(problem) => Ok(Self::new(problem, Some(file))),
             Err(wrong) => Err(faults(py, &wrong)),
         }
@@ -240,6 +292,12 @@ impl Problem {
         self.problem.without_equilibrium().is_some()
     }
 
+    /// Whether it names files, which lie beside its own.
+    #[getter]
+    fn names_files(&self) -> bool {
+        self.problem.names_files()
+    }
+
     #[getter]
     fn notes(&self) -> Vec<String> {
         self.problem.notes_of_input()
@@ -268,19 +326,28 @@ impl Problem {
         self.with_session(py, |session, _| *session = Session::default())
     }
 
+    /// The motion at instants that are times, or fractions of the duration; or at those of tables.
     fn motion(
         &self,
         py: Python<'_>,
         x: PyReadonlyArray1<'_, f64>,
         times: Option<PyReadonlyArray1<'_, f64>>,
+        fractions: Option<PyReadonlyArray1<'_, f64>>,
     ) -> PyResult<Motion> {
         let x = self.design(&x)?;
-        let times = times.as_ref().map(numbers);
-        let found = self.with_session(py, move |session, problem| {
-            session.analysis(problem).motion(&x, times.as_deref())
+        let (times, fractions) = (times.as_ref().map(numbers), fractions.as_ref().map(numbers));
+        let (found, judged) = self.with_session(py, move |session, problem| {
+            let found = session.analysis(problem).motion(&x);
+            (found, session.judged.clone())
         })?;
         let motion = found.map_err(|error| simulation(py, &error))?;
-        Ok(Motion::new(motion, &self.problem, &self.interrupt))
+        let motion = match (times, fractions) {
+            (Some(times), _) => motion.at_times(&times),
+            (None, Some(fractions)) => motion.at_fractions(&fractions),
+            (None, None) => Ok(motion),
+        };
+        let motion = motion.map_err(PyValueError::new_err)?;
+        Ok(Motion::new(motion, &self.problem, (&judged, &self.stop)))
     }
 
     /// Nodes and cases.
@@ -378,7 +445,7 @@ impl Problem {
     ) -> PyResult<Optimum> {
         optimise(
             py,
-            (&self.problem, &self.interrupt),
+            (&self.problem, &self.stop),
             self.file.clone(),
             (callback, wanted),
         )

@@ -10,6 +10,7 @@ import numpy as np
 import pytest
 
 import flexbody
+from scenes import PENDULUM
 
 jax = pytest.importorskip("jax")
 jnp = pytest.importorskip("jax.numpy")
@@ -103,6 +104,54 @@ def test_histories(pendulum: flexbody.Problem) -> None:
         assert float(slope @ direction) == pytest.approx(expected, rel=1e-8, abs=1e-8)
     whole = histories(pendulum, ["time"])(x)
     assert whole[0, 0] == 0 and whole[0, -1] == pytest.approx(1.0)
+
+
+@pytest.fixture
+def stopped() -> flexbody.Problem:
+    """A pendulum whose duration is a variable."""
+    duration = {"path": "/simulation/duration", "lower": 0.2, "upper": 2}
+    return flexbody.Problem.from_dict({**PENDULUM, "variables": {"duration": duration}})
+
+
+def test_instants_are_fixed_or_fractions_of_the_duration(stopped: flexbody.Problem) -> None:
+    x = jnp.array([0.7])
+    motion = histories(stopped, ["time", "height"], fractions=[0, 0.5, 1])
+    assert np.asarray(motion(x)[0]) == pytest.approx([0, 0.35, 0.7])
+    assert np.asarray(jax.jacrev(motion)(x)[0, :, 0]) == pytest.approx([0, 0.5, 1])
+    speed = stopped.simulate([0.7]).histories["speed"][-1]
+    assert float(jax.jacrev(motion)(x)[1, 2, 0]) == pytest.approx(speed, rel=1e-6)
+    fixed = histories(stopped, ["time", "height"], at=[0.1, 0.5])
+    assert np.asarray(jax.jacrev(fixed)(x)[:, :, 0]) == pytest.approx(np.zeros((2, 2)), abs=1e-4)
+    with pytest.raises(ValueError, match="found both at and fractions"):
+        histories(stopped, ["height"], [0.1], fractions=[0.1])
+    with pytest.raises(ValueError, match="fractions: expected a list of numbers"):
+        histories(stopped, ["height"], fractions=[[0.1]])
+
+
+def test_a_motion_that_ends_before_the_last_instant_has_failed(stopped: flexbody.Problem) -> None:
+    early = jnp.array([0.4])
+    with pytest.raises(ValueError, match="instant"):
+        histories(stopped, ["height"], at=[0.1, 0.5])(early)
+    survives = histories(stopped, ["height"], at=[0.1, 0.5], failures="nan")
+    assert np.isnan(survives(early)).all()
+    assert np.isnan(jax.grad(lambda x: survives(x).sum())(early)).all()
+    assert np.isfinite(survives(jnp.array([0.6]))).all()
+    with pytest.raises(ValueError):
+        histories(stopped, ["height"], at=[0.1, 5.0], failures="nan")
+
+
+def test_a_function_named_time_is_this_function() -> None:
+    named = {**PENDULUM, "functions": {**PENDULUM["functions"], "time": PENDULUM["functions"]["height"]}}
+    problem = flexbody.Problem.from_dict(named)
+    motion = histories(problem, ["time", "height"], at=[0.1, 0.5])
+    x = jnp.array(problem.variables.start)
+    found, slopes = motion(x), jax.jacrev(motion)(x)
+    assert np.asarray(found[0]) == pytest.approx(np.asarray(found[1]), rel=1e-15)
+    assert np.asarray(slopes[0]) == pytest.approx(np.asarray(slopes[1]), rel=1e-12)
+    assert np.abs(slopes[0]).max() > 1e-3
+    named["functions"]["time"] = "duration"
+    with pytest.raises(ValueError, match='names: no "time"; there are height, speed'):
+        histories(flexbody.Problem.from_dict(named), ["time"])
 
 
 def test_single_precision_is_refused(trebuchet: flexbody.Problem) -> None:

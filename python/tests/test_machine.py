@@ -395,6 +395,18 @@ def test_parts_are_dictionaries() -> None:
     assert damping() == {}
 
 
+def test_copies_do_not_share_their_document() -> None:
+    machine = pendulum()
+    before = machine.to_dict()
+    for copied in (copy.copy(machine), copy.deepcopy(machine), pickle.loads(pickle.dumps(machine))):
+        assert copied.to_dict() == before
+        copied.add_function("mass", functions.mass)
+        copied.set_simulation(duration=3)
+        assert machine.to_dict() == before
+        with pytest.raises(ValueError, match='there is a body "arm" already, made by add_body'):
+            copied.add_body("arm", mass=1)
+
+
 def test_files_are_whole_or_not_written(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     machine = pendulum()
     path = tmp_path / "pendulum.json"

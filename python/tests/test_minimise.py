@@ -152,6 +152,46 @@ def test_functions_without_value_are_avoided() -> None:
     assert found.nfail == len(refused) > 0
 
 
+def test_constraints_without_value_at_the_start_have_all_their_rows() -> None:
+    """The first evaluation near the start that has values tells how many there are."""
+
+    def rows(x: Any) -> Any:
+        if x[0] <= 0:
+            raise FloatingPointError("the logarithm of a negative number")
+        return np.array([x[0] + x[1] - 1, np.log(x[0]) + 2, x[1]])
+
+    limits = {"type": "ineq", "fun": rows, "name": "limits"}
+    found = minimise(lambda x: x @ x, [0.0, 1.0], jac=lambda x: 2 * x, bounds=[(0, None)] * 2, constraints=limits)
+    assert found.success
+    assert found.x == pytest.approx([0.5, 0.5], abs=1e-5)
+    assert found.constraints[0].shape == found.multipliers["constraints"].shape == (3,)
+
+
+def test_infeasible_without_derivatives() -> None:
+    problem: dict[str, Any] = {"fun": lambda x: ((x - 1) ** 2).sum(), "x0": [3.0, 4.0]}
+    never = {"type": "eq", "fun": lambda x: x[0] ** 2 + 1, "name": "never"}
+    assert minimise(**problem, constraints=never).status == "infeasible"
+    blamed = minimise(**problem, constraints={**never, "jac": "2-point"})
+    assert blamed.status in ("infeasible", "inconsistent")
+    if blamed.status == "inconsistent":
+        assert blamed.message.endswith("derivatives are differences, whose error may be the cause: give jac, never: jac")
+        assert blamed.verdict == f"inconsistent: {blamed.message}"
+
+
+def test_wrong_derivatives_are_not_blamed_on_differences() -> None:
+    wrong = minimise(rosenbrock, [-1.2, 1.0], jac=lambda x: -rosenbrock_slope(x))
+    assert wrong.status == "inconsistent"
+    assert "differences" not in wrong.verdict
+
+
+def test_arguments_that_are_no_tuple_are_one() -> None:
+    found = minimise(lambda x, a: ((x - a) ** 2).sum(), [0.0, 0.0], args=[1.0, 2.0], jac=lambda x, a: 2 * (x - a))
+    assert found.x == pytest.approx([1, 2], abs=1e-6)
+    at_least = {"type": "ineq", "fun": lambda x, a, b: x[0] - a * b, "args": [1.5, 2.0]}
+    found = minimise(lambda x, a: ((x - a) ** 2).sum(), [0.0, 0.0], args=1.0, constraints=at_least, tol=1e-4)
+    assert found.x == pytest.approx([3, 1], abs=1e-3)
+
+
 def test_start_without_value_is_a_verdict() -> None:
     def nowhere(x: Any) -> float:
         raise flexbody.SimulationError("the joint opens")
@@ -207,8 +247,9 @@ def test_callback_sees_iterates_and_stops() -> None:
     assert stopped.status == "interrupted"
     assert len(count) < len(seen)
     assert count[0].fun > count[-1].fun
-    at_once = minimise(rosenbrock, [-1.2, 1.0], jac=rosenbrock_slope, callback=lambda x: True)
-    assert at_once.nit <= 1
+    for true in (True, 1, "enough"):
+        at_once = minimise(rosenbrock, [-1.2, 1.0], jac=rosenbrock_slope, callback=lambda x, true=true: true)
+        assert at_once.status == "interrupted" and at_once.nit <= 1
 
 
 def test_differences_stay_within_bounds() -> None:
@@ -276,8 +317,9 @@ def test_names_of_options_in_scipy() -> None:
 
 
 def test_hessians_are_not_used_with_a_warning() -> None:
-    with pytest.warns(RuntimeWarning, match="hess is not used"):
+    with pytest.warns(RuntimeWarning, match="hess is not used") as caught:
         minimise(rosenbrock, [0.0, 0.0], jac=rosenbrock_slope, hess=lambda x: np.eye(2))
+    assert caught[0].filename == __file__
 
 
 def test_constraints_are_not_kept_on_the_way_with_a_warning() -> None:
@@ -348,6 +390,54 @@ def test_misuse_is_refused_in_one_line(wrong: dict[str, Any], kind: type[Excepti
     assert str(caught.value) == message
 
 
-def test_unknown_option_is_refused() -> None:
-    with pytest.raises(ValueError, match="patience"):
-        minimise(rosenbrock, [0.0, 0.0], options={"patience": 3})
+WRONG_OPTIONS: list[tuple[dict[str, Any], type[Exception], str]] = [
+    ({"maxiter": -1}, ValueError, "options: expected maxiter of at least 0, found -1"),
+    ({"maxiter": 1e3}, TypeError, "options: expected a whole number as maxiter, found 1000.0"),
+    ({"max_evaluations": True}, TypeError, "options: expected a whole number as max_evaluations, found True"),
+    ({"memory": 0}, ValueError, "options: expected memory of at least 1, found 0"),
+    ({"scale_variables": 3}, TypeError, "options: expected True or False as scale_variables, found 3"),
+    ({"tolerance": 0}, ValueError, "options: expected a positive number as tolerance, found 0"),
+    ({"tolerance": "small"}, TypeError, "options: expected a number as tolerance, found 'small'"),
+    ({"max_seconds": -1.0}, ValueError, "options: expected max_seconds of at least 0, found -1.0"),
+    ({"unbounded_below": np.nan}, ValueError, "options: expected a number as unbounded_below, found nan"),
+    (
+        {"finite_diff_rel_step": 2.0},
+        ValueError,
+        "options: expected finite_diff_rel_step between 0 and 1, found 2.0",
+    ),
+    ({"maxiter": 1, "max_iterations": 2}, ValueError, "options: found max_iterations twice, by both of its names"),
+    (
+        {"patience": 3},
+        ValueError,
+        "options: expected some of method, tolerance, constraint_tolerance, max_iterations, maxiter, max_evaluations, "
+        "maxfev, max_seconds, unbounded_below, scale_variables, memory, dense_limit, finite_diff_rel_step, disp, "
+        "found 'patience'",
+    ),
+]
+
+
+@pytest.mark.parametrize(("wrong", "kind", "message"), WRONG_OPTIONS, ids=[case[2] for case in WRONG_OPTIONS])
+def test_wrong_options_are_refused_by_name(wrong: dict[str, Any], kind: type[Exception], message: str) -> None:
+    with pytest.raises(kind) as caught:
+        minimise(rosenbrock, [0.0, 0.0], jac=rosenbrock_slope, options=wrong)
+    assert str(caught.value) == message
+
+
+def test_all_options_are_taken() -> None:
+    options = {
+        "method": "auto",
+        "tolerance": np.float32(1e-4),
+        "constraint_tolerance": 1e-5,
+        "maxiter": np.int64(200),
+        "maxfev": 1000,
+        "max_seconds": 60,
+        "unbounded_below": -1e10,
+        "scale_variables": np.True_,
+        "memory": 5,
+        "dense_limit": 0,
+        "finite_diff_rel_step": 1e-7,
+        "disp": None,
+    }
+    assert minimise(rosenbrock, [0.0, 0.0], jac="3-point", options=options).success
+    with pytest.raises(ValueError, match="options: expected a positive number as tol, found -1"):
+        minimise(rosenbrock, [0.0, 0.0], tol=-1)

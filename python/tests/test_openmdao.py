@@ -13,6 +13,7 @@ import numpy as np
 import pytest
 
 import flexbody
+from scenes import PENDULUM
 
 om = pytest.importorskip("openmdao.api")
 
@@ -281,6 +282,30 @@ def test_driver_takes_equalities_arrays_and_scaling() -> None:
     assert task["x"] == pytest.approx([2.5, 2.0, 2.0], rel=1e-6)
 
 
+@pytest.mark.parametrize("limits", [{"lower": 1.0, "upper": 4.5}, {"upper": 4.5}, {"upper": [4.5]}])
+@pytest.mark.parametrize("scaling", [{"scaler": -3.0}, {"ref": -1.0, "ref0": 1.0}, {"ref": 5.0}])
+def test_driver_takes_negative_scalers(limits: dict[str, Any], scaling: dict[str, float]) -> None:
+    task = om.Problem(driver=FlexbodyDriver(), reports=None)
+    task.model.add_subsystem("f", om.ExecComp(["f = (x - 3) ** 2 + (y - 3) ** 2", "g = x + y"]), promotes=["*"])
+    task.model.add_design_var("x", lower=-1, upper=2, **scaling)
+    task.model.add_design_var("y", lower=0.5)
+    task.model.add_objective("f")
+    task.model.add_constraint("g", **limits, **scaling)
+    task.setup()
+    assert task.run_driver().success
+    assert [task["x"][0], task["y"][0]] == pytest.approx([2.0, 2.5], abs=1e-5)
+
+
+def test_driver_does_not_hide_bounds_that_contradict_each_other() -> None:
+    task = om.Problem(driver=FlexbodyDriver(), reports=None)
+    task.model.add_subsystem("f", om.ExecComp(["f = x ** 2", "g = x"]), promotes=["*"])
+    task.model.add_design_var("x")
+    task.model.add_objective("f")
+    task.model.add_constraint("g", lower=2, upper=1)
+    task.setup()
+    assert not task.run_driver().success
+
+
 def test_driver_passes_exceptions_on() -> None:
     task = om.Problem(reports=None)
 
@@ -350,6 +375,18 @@ def test_misuse(trebuchet: flexbody.Problem) -> None:
         throw(trebuchet, functions=["rnage"])
     with pytest.raises(ValueError, match='the objective or a constraint needs "range"'):
         throw(trebuchet, functions=["clearance"])
+    with pytest.raises(ValueError, match="FlexbodyComp: no functions of trebuchet"):
+        task = om.Problem(reports=None)
+        task.model.add_subsystem("throw", FlexbodyComp(trebuchet, functions=[]))
+        task.setup()
+    still = {name: entry for name, entry in PENDULUM.items() if name != "variables"}
+    with pytest.raises(ValueError, match="FlexbodyComp: the problem pendulum has no variables"):
+        task = om.Problem(reports=None)
+        task.model.add_subsystem("swing", FlexbodyComp(flexbody.Problem.from_dict(still)))
+        task.setup()
+    task = throw(trebuchet, FlexbodyDriver(max_iterations=-1))
+    with pytest.raises(ValueError, match="options: expected max_iterations of at least 0, found -1"):
+        task.run_driver()
     task = om.Problem(driver=FlexbodyDriver(), reports=None)
     task.model.add_subsystem("f", om.ExecComp(["y = x", "z = 2 * x"]), promotes=["*"])
     task.model.add_design_var("x")

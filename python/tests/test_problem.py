@@ -4,6 +4,8 @@ from __future__ import annotations
 
 import copy
 import json
+import multiprocessing
+import pickle
 import subprocess
 from pathlib import Path
 from typing import Any
@@ -18,10 +20,10 @@ from scenes import PENDULUM, PROBLEMS
 
 def test_variables_and_functions_have_names_units_and_bounds(trebuchet: flexbody.Problem) -> None:
     assert trebuchet.name == "trebuchet"
-    assert trebuchet.variables.names[:2] == ["counterweight mass", "link mass"]
-    assert trebuchet.variables.units == ["kg"] * 5 + ["rad"]
+    assert trebuchet.variables.names[:2] == ("counterweight mass", "link mass")
+    assert trebuchet.variables.units == ("kg",) * 5 + ("rad",)
     assert trebuchet.variables.lower[0] == 300 and trebuchet.variables.upper[0] == 500
-    assert trebuchet.functions.names == ["range", "clearance"] and trebuchet.functions.units == ["m", "m"]
+    assert trebuchet.functions.names == ("range", "clearance") and trebuchet.functions.units == ("m", "m")
     assert trebuchet.objective == flexbody.Objective("range", "maximise")
     (constraint,) = trebuchet.constraints
     assert (constraint.function, constraint.lower, constraint.upper) == ("clearance", 0, np.inf)
@@ -55,7 +57,7 @@ def test_values_and_gradients_by_array_and_by_name(pendulum: flexbody.Problem) -
     assert values.shape == (3,) and pendulum.gradients(x).shape == (3, 2)
     both = pendulum.evaluate({"mass": 1.0, "gravity": -9.81})
     assert both["height"] == values[0] and both.gradient("mass") == {"gravity": 0.0, "mass": 1.0}
-    assert list(both) == ["height", "speed", "mass"]
+    assert list(both) == ["height", "speed", "mass"] and dict(both)["mass"] == 1
     assert pendulum.values(x, functions=["mass", "height"]).tolist() == [values[2], values[0]]
 
 
@@ -86,6 +88,9 @@ def test_arrays_of_other_kinds_are_converted(pendulum: flexbody.Problem, kind: s
         (np.array(["a", "b"]), "found a design of type <U1"),
         ([np.nan, 1.0], 'found NaN for the variable "gravity", expected a finite number'),
         ([-9.81, np.inf], 'found inf for the variable "mass"'),
+        ({"gravity": "9"}, "found '9' for the variable 'gravity', expected a real number"),
+        ({"gravity": None}, "found None for the variable 'gravity'"),
+        ([[1.0], [1.0, 2.0]], "found a ragged design"),
         ({"gravty": -9.0}, "found the variable 'gravty', expected one of the problem; did you mean 'gravity'?"),
     ],
 )
@@ -141,6 +146,59 @@ def test_changes_and_the_way_back_to_a_file(tmp_path: Path) -> None:
     assert flexbody.Problem.from_dict(document).values().tolist() == moon.values().tolist()
     with pytest.raises(flexbody.ProblemError, match="/gravty/1"):
         flexbody.Problem.from_dict(PENDULUM, set={"/gravty/1": -1.62})
+
+
+def test_changes_have_any_path(tmp_path: Path) -> None:
+    document = copy.deepcopy(PENDULUM)
+    document["bodies"]["a=b"] = {"shape": {"sphere": {"radius": 1}}, "mass": 1}
+    found = flexbody.Problem.from_dict(document, set={"/bodies/a=b/mass": np.float64(2.0)})
+    assert found.values(functions=["mass"]).tolist() == [3.0]
+    for wrong, message in [
+        ({"gravity": 1}, "expected a JSON Pointer"),
+        ({"/gravity/1": float("nan")}, "not JSON compliant"),
+        ([1], "expected a mapping of paths"),
+    ]:
+        with pytest.raises((ValueError, TypeError), match=message):
+            flexbody.Problem.from_dict(PENDULUM, set=wrong)  # type: ignore[arg-type]
+
+
+def test_problems_are_pickled(pendulum: flexbody.Problem, trebuchet: flexbody.Problem) -> None:
+    for problem in (pendulum, trebuchet):
+        again = pickle.loads(pickle.dumps(problem))
+        assert again.values().tolist() == problem.values().tolist()
+        assert copy.deepcopy(problem).name == problem.name
+    with multiprocessing.get_context("spawn").Pool(1) as pool:
+        assert pool.apply(pendulum.values).tolist() == pendulum.values().tolist()
+
+
+def test_a_problem_with_files_beside_it_stays_there(tmp_path: Path) -> None:
+    bracket = flexbody.Problem.from_file(PROBLEMS / "flexible" / "modal_bracket.json")
+    with pytest.raises(ValueError, match="names files in"):
+        bracket.to_file(tmp_path / "bracket.json")
+    folder = PROBLEMS / "flexible"
+    again = flexbody.Problem.from_dict(bracket.to_dict(), directory=folder)
+    assert again.variables.names == bracket.variables.names
+
+
+def test_modes_are_as_many_as_there_are() -> None:
+    problem = flexbody.Problem.from_dict(
+        {
+            "version": 1,
+            "name": "strip",
+            "materials": {"steel": {"young": 2e11, "poisson": 0.3, "density": 7800, "yield_stress": 3e8}},
+            "structures": {
+                "strip": {
+                    "mesh": {"plate": {"length": 1, "width": 0.1, "elements": [1, 1]}},
+                    "material": "steel",
+                    "thickness": 0.01,
+                    "supports": {"wall": {"nodes": ["x0"]}},
+                }
+            },
+            "load_cases": {"push": {"p": {"pressure": {"faces": "all", "pressure": 1}}}},
+            "functions": {"mass": "mass"},
+        }
+    )
+    assert 0 < len(problem.modes(count=10**6)) < 100
 
 
 def test_designs_without_values_are_exceptions() -> None:

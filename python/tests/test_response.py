@@ -85,7 +85,7 @@ def test_instants_between_samples() -> None:
     assert response.body("ball").position[:, 0] == pytest.approx(3 * at, abs=1e-10)
     assert response.history_error("y") < 1e-9
     for wrong in ([0.6], [-0.1], [np.nan]):
-        with pytest.raises(flexbody.SimulationError, match="expected one between 0 and the end"):
+        with pytest.raises(ValueError, match="expected one between 0 and the end"):
             ball().simulate(at=wrong)
     with pytest.raises(ValueError, match="expected one dimension"):
         ball().simulate(at=[[0.1]])
@@ -218,3 +218,68 @@ def test_a_frame_of_pandas(pendulum: flexbody.Problem) -> None:
     assert table.index.name == "time [s]" and len(table) == len(response.times)
     assert table["height"].tolist() == response.histories["height"].tolist()
     assert table["bar: position x"].iloc[0] == pytest.approx(0.5)
+
+
+def test_fixed_instants_keep_their_time_where_the_end_moves() -> None:
+    """A ball that falls to the ground: at fixed instants its height is 4 t − 5 t², whatever ends the motion."""
+    document: dict[str, Any] = ball().to_dict()
+    height = {"position": {"body": "ball", "direction": [0, 1, 0]}}
+    document["simulation"] = {"duration": 5, "until": {"measure": height, "reaches": -1}}
+    problem = flexbody.Problem.from_dict(document)
+    at = np.array([0.0, 0.1, 0.35, 0.8])
+    response = problem.simulate(at=at)
+    assert response.histories["y"] == pytest.approx(4 * at - 5 * at**2, abs=1e-9)
+    weights = np.array([3.0, -1.0, 2.0, 0.5])
+    by_up, by_gravity = response.pull_back({"y": weights})
+    assert by_up == pytest.approx((weights * at).sum(), rel=1e-7)
+    assert by_gravity == pytest.approx((weights * at**2 / 2).sum(), rel=1e-7)
+    assert response.pull_back({"time": weights}).tolist() == [0, 0]
+    # As fractions of the duration they move with the end.
+    moving = problem.simulate(fractions=at / response.duration)
+    assert moving.times == pytest.approx(at)
+    assert abs(moving.pull_back({"y": weights})[0] - by_up) > 0.01
+    assert moving.pull_back({"time": [0, 0, 0, 1.0]})[0] > 0.01
+    with pytest.raises(ValueError, match="found the fraction 1.5"):
+        problem.simulate(fractions=[1.5])
+    with pytest.raises(ValueError, match="expected one of both"):
+        problem.simulate(at=at, fractions=at)
+
+
+def test_fixed_instants_of_a_machine_against_differences() -> None:
+    """The trebuchet whose sling lets go at an angle: the end of the motion is an event."""
+    problem = flexbody.Problem.from_file(PROBLEMS / "trebuchet_release_angle.json")
+    at = np.linspace(0.1, 0.9, 9) * problem.simulate().duration * 0.95
+
+    def value(x: Array) -> float:
+        return float((problem.simulate(x, at=at).histories["range"] ** 2).sum())
+
+    x = problem.variables.start.copy()
+    response = problem.simulate(x, at=at)
+    gradient = response.pull_back({"range": 2 * response.histories["range"]})
+    expected = differences(value, x, 1e-5)
+    scale = np.abs(expected * problem.variables.scale).max() / problem.variables.scale
+    assert np.abs((gradient - expected) / scale).max() < 1e-5
+
+
+def test_a_function_of_the_name_time_is_a_function() -> None:
+    document = ball().to_dict()
+    document["functions"]["time"] = document["functions"].pop("y")
+    problem = flexbody.Problem.from_dict(document)
+    response = problem.simulate(at=[0.1, 0.2])
+    assert response.histories["time"] == pytest.approx([0.35, 0.6], abs=1e-9)
+    assert response.pull_back({"time": [0, 1.0]}) == pytest.approx([0.2, 0.02], abs=1e-7)
+
+
+def test_a_response_is_freed_with_its_last_name(pendulum: flexbody.Problem) -> None:
+    import weakref
+
+    response = pendulum.simulate()
+    response.histories["height"]
+    seen = weakref.ref(response)
+    del response
+    assert seen() is None
+
+
+def test_cotangents_that_are_not_finite_are_refused(pendulum: flexbody.Problem) -> None:
+    with pytest.raises(ValueError, match="cotangent of 'height' that is not finite"):
+        pendulum.simulate(at=[0.1]).pull_back({"height": [np.nan]})

@@ -61,7 +61,28 @@ def test_an_exception_of_a_callback_is_raised(trebuchet: flexbody.Problem) -> No
 
     with pytest.raises(ZeroDivisionError, match="on purpose"):
         trebuchet.optimise(callback=callback)
+    # The work of other threads on this problem goes on.
+    assert np.isfinite(trebuchet.values()).all()
     assert trebuchet.optimise(certificate=False).converged
+
+
+@pytest.mark.parametrize("threads", [1, 2])
+def test_a_callback_may_use_the_library(trebuchet: flexbody.Problem, threads: int) -> None:
+    """Even the same problem, and on one thread."""
+    before = flexbody.threads()
+    seen: list[float] = []
+
+    def callback(row: dict[str, Any]) -> bool:
+        seen.append(trebuchet.values(row["x"])[0])
+        seen.append(trebuchet.simulate(row["x"], at=[0.5]).body("stone").position[0, 0])
+        return len(seen) >= 8
+
+    try:
+        flexbody.threads(threads)
+        assert trebuchet.optimise(callback=callback, certificate=False).status == "interrupted"
+    finally:
+        flexbody.threads(before)
+    assert len(seen) == 8
 
 
 def test_an_interrupted_run_is_resumed_without_repetition(trebuchet: flexbody.Problem, tmp_path: Path) -> None:
@@ -92,8 +113,11 @@ def test_several_starts_find_several_optima(trebuchet: flexbody.Problem, tmp_pat
     assert (tmp_path / "optima.csv").exists() and not (tmp_path / "report.html").exists()
     with pytest.raises(ValueError, match="a callback and several starts"):
         trebuchet.optimise(starts=2, callback=print)
-    with pytest.raises(ValueError, match="found 0 starts"):
-        trebuchet.optimise(starts=0)
+    for wrong in (0, -1, 1.5, True, 10**15):
+        with pytest.raises(ValueError, match=f"found {wrong} starts"):
+            trebuchet.optimise(starts=wrong)  # type: ignore[arg-type]
+    with pytest.raises(TypeError, match="expected a function"):
+        trebuchet.optimise(callback=3)  # type: ignore[arg-type]
 
 
 def test_what_cannot_be_optimised_is_said(pendulum: flexbody.Problem) -> None:

@@ -106,6 +106,41 @@ def test_one_problem_in_two_threads_is_right(trebuchet: flexbody.Problem) -> Non
     assert [found[k] for k in range(20)] == expected
 
 
+def test_one_structure_in_four_threads_is_right() -> None:
+    """Its work is parallel inside, and its designs come one after the other."""
+    problem = flexbody.Problem.from_file(PROBLEMS / "thickness_sheet.json")
+    start = problem.variables.start
+    expected = problem.values(start)
+    found: list[Any] = []
+
+    def work(k: int) -> None:
+        for i in range(5):
+            problem.values(start * (1 + 1e-6 * (5 * k + i)))
+        found.append(problem.values(start))
+
+    threads = [threading.Thread(target=work, args=(k,), daemon=True) for k in range(4)]
+    for thread in threads:
+        thread.start()
+    for thread in threads:
+        thread.join(timeout=120)
+    assert len(found) == 4
+    assert all(values == pytest.approx(expected, rel=1e-12) for values in found)
+
+
+def test_a_long_run_does_not_hold_up_another_problem(trebuchet: flexbody.Problem) -> None:
+    pendulum = flexbody.Problem.from_dict(PENDULUM)
+    pendulum.values()
+    thread = threading.Thread(target=lambda: trebuchet.optimise(starts=20, certificate=False), daemon=True)
+    thread.start()
+    time.sleep(0.2)
+    begun = time.monotonic()
+    pendulum.values([-9.0, 1.0])
+    waited = time.monotonic() - begun
+    was_running = thread.is_alive()
+    thread.join(timeout=120)
+    assert was_running and waited < 1.0
+
+
 def test_other_threads_run_meanwhile() -> None:
     """The interpreter is free while a motion is computed."""
     problem = long_motion()
@@ -145,6 +180,14 @@ def test_the_number_of_threads() -> None:
 def _values(x: list[float]) -> list[float]:
     found: list[float] = flexbody.Problem.from_dict(PENDULUM).values(x).tolist()
     return found
+
+
+def test_a_signal_in_a_minimisation_is_heeded() -> None:
+    timer = threading.Timer(0.3, lambda: os.kill(os.getpid(), signal.SIGINT))
+    timer.start()
+    with pytest.raises(KeyboardInterrupt):
+        flexbody.minimise(lambda x: (time.sleep(0.01), float(x @ x))[1], np.ones(40))
+    timer.join()
 
 
 @pytest.mark.skipif("fork" not in multiprocessing.get_all_start_methods(), reason="no fork here")

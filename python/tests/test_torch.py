@@ -11,6 +11,7 @@ import numpy as np
 import pytest
 
 import flexbody
+from scenes import PENDULUM
 
 torch = pytest.importorskip("torch")
 
@@ -103,6 +104,56 @@ def test_histories(pendulum: flexbody.Problem) -> None:
     z = torch.ones(2, dtype=torch.float64, requires_grad=True)
     assert torch.autograd.gradcheck(cost, (z,), eps=1e-5, atol=1e-6, rtol=1e-4)
     assert motion(torch.stack([x, x])).shape == (2, 2, 10)
+
+
+@pytest.fixture
+def stopped() -> flexbody.Problem:
+    """A pendulum whose duration is a variable."""
+    duration = {"path": "/simulation/duration", "lower": 0.2, "upper": 2}
+    return flexbody.Problem.from_dict({**PENDULUM, "variables": {"duration": duration}})
+
+
+def test_instants_are_fixed_or_fractions_of_the_duration(stopped: flexbody.Problem) -> None:
+    x = torch.tensor([0.7], dtype=torch.float64, requires_grad=True)
+    motion = histories(stopped, ["time", "height"], fractions=[0, 0.5, 1])
+    found = motion(x)
+    assert found[0].detach().numpy() == pytest.approx([0, 0.35, 0.7])
+    found[0].sum().backward()
+    assert x.grad.numpy() == pytest.approx([1.5])
+    fixed = histories(stopped, ["time", "height"], at=[0.1, 0.5])(x)
+    (slope,) = torch.autograd.grad(fixed.sum(), x)
+    assert slope.numpy() == pytest.approx([0], abs=1e-4)
+
+
+def test_a_motion_that_ends_before_the_last_instant_has_failed(stopped: flexbody.Problem) -> None:
+    early = torch.tensor([[0.4], [0.6]], dtype=torch.float64, requires_grad=True)
+    with pytest.raises(ValueError, match="instant"):
+        histories(stopped, ["height"], at=[0.1, 0.5])(early)
+    found = histories(stopped, ["height"], at=[0.1, 0.5], failures="nan")(early)
+    assert torch.isnan(found[0]).all() and torch.isfinite(found[1]).all()
+    found.sum().backward()
+    assert torch.isnan(early.grad).flatten().tolist() == [True, False]
+
+
+def test_weights_that_are_no_numbers_give_no_gradient(pendulum: flexbody.Problem) -> None:
+    x = start(pendulum)
+    (histories(pendulum, ["y"], [0.1])(x).sum() * np.nan).backward()
+    assert torch.isnan(x.grad).all()
+
+
+def test_empty_batches(trebuchet: flexbody.Problem, pendulum: flexbody.Problem) -> None:
+    for simulate, shape in (
+        (function(trebuchet), (0, 2)),
+        (histories(pendulum, ["y", "x"], [0.1, 0.2, 0.3]), (0, 2, 3)),
+    ):
+        count = 6 if simulate.__qualname__.startswith("function") else 2
+        none = torch.zeros((0, count), dtype=torch.float64, requires_grad=True)
+        found = simulate(none)
+        assert found.shape == shape
+        found.sum().backward()
+        assert none.grad.shape == none.shape
+        with torch.no_grad():
+            assert simulate(torch.zeros((3, 0, count), dtype=torch.float64)).shape == (3, *shape)
 
 
 def test_precision_of_networks(trebuchet: flexbody.Problem) -> None:

@@ -79,8 +79,8 @@ fn from_record(
 
 /// Prints the JSON Schema of problem files.
 pub(crate) fn schema() -> Result<u8, Failure> {
-    let text =
-        serde_json::to_string_pretty(&crate::problem::schema()).map_err(Failure::bad_input)?;
+    let text = serde_json::to_string_pretty(&crate::problem::schema_with_expressions())
+        .map_err(Failure::bad_input)?;
     print(&(text + "\n"))?;
     Ok(DONE)
 }

@@ -75,6 +75,11 @@ pub struct Document {
         "design_variable" = "a tolerance is the file's, not a physical number"
     ))]
     pub input_tolerance: Option<f64>,
+    /// Numbers by name that expressions use: "= L/2" stands for a number anywhere in the file. Expressions have + − * / ^,
+    /// parentheses, pi, deg (a degree in radians), sin, cos, tan, asin, acos, atan, atan2, sqrt, exp, log, and these
+    /// names. A parameter may be an expression of others, and a design variable.
+    #[serde(default)]
+    pub parameters: IndexMap<String, Quantity>,
     /// Bodies by name.
     #[serde(default)]
     pub bodies: IndexMap<String, Body>,
@@ -422,6 +427,32 @@ pub fn schema() -> &'static serde_json::Value {
         tidy(&mut schema);
         schema
     })
+}
+
+/// [`schema`] for editors: every number may be an expression, a text that begins with "=".
+pub fn schema_with_expressions() -> serde_json::Value {
+    let mut schema = schema().clone();
+    admit_expressions(&mut schema);
+    schema
+}
+
+fn admit_expressions(schema: &mut serde_json::Value) {
+    use serde_json::{Value, json};
+    match schema {
+        Value::Array(items) => items.iter_mut().for_each(admit_expressions),
+        Value::Object(object) => {
+            let kind = object.get("type").and_then(Value::as_str);
+            if let (Some(kind @ ("number" | "integer")), false) =
+                (kind, object.contains_key("const"))
+            {
+                let kinds = json!([kind, "string"]);
+                object.insert("type".into(), kinds);
+                object.insert("pattern".into(), json!("^="));
+            }
+            object.values_mut().for_each(admit_expressions);
+        }
+        _ => {}
+    }
 }
 
 /// Removes `null` (an unused key is omitted) and line breaks in descriptions, and moves units and

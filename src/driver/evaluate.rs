@@ -57,6 +57,9 @@ impl Evaluated {
         problem: &Problem,
         x: &[f64],
     ) -> Result<(Self, Option<Refresh>), IntegrationFailure> {
+        if let Some(what) = problem.undefined_expression(x) {
+            return Err(IntegrationFailure::Undefined { what });
+        }
         let mut scene = problem.unlowered_scene::<f64>(x);
         // Coordinates and points of flexible bodies have no mass of their own.
         let model = &scene.model;

@@ -43,13 +43,11 @@ impl Analysis {
         })
     }
 
-    /// Simulates the design `x` and samples the whole motion, at the instants `at` \[s\] or at those of
-    /// tables and figures.
+    /// Simulates the design `x` and samples the whole motion.
     ///
     /// # Errors
-    /// As of [`Analysis::at`]; the problem is one of structures without a motion, or an instant is not
-    /// between 0 and the end.
-    pub fn motion(&mut self, x: &[f64], at: Option<&[f64]>) -> Result<Motion, SimulationError> {
+    /// As of [`Analysis::at`], or the problem is one of structures without a motion.
+    pub fn motion(&mut self, x: &[f64]) -> Result<Motion, SimulationError> {
         if self.problem.statics.is_some() {
             return Err(AnalysisFailure::NoMotion.into());
         }
@@ -74,7 +72,7 @@ impl Analysis {
                 sampled(&self.integration)?.0
             }
         };
-        Motion::new(self.problem.clone(), evaluated, at)
+        Ok(Motion::new(self.problem.clone(), evaluated))
     }
 
     /// Chooses the time steps anew at the next design.

@@ -17,6 +17,9 @@ use std::ops::ControlFlow;
 use std::path::{Path, PathBuf};
 use std::sync::Mutex;
 
+/// Most starts of an optimisation.
+const MOST_STARTS: usize = 1_000_000;
+
 /// One iteration of an optimisation.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Iteration {
@@ -131,8 +134,8 @@ pub fn optimise_with(
     let problem = focused.as_ref().unwrap_or(problem);
     let starts = match options.starts {
         None => None,
-        Some(0) => {
-            let what = "found 0 starts, expected at least 1".to_owned();
+        Some(count) if !(1..=MOST_STARTS).contains(&count) => {
+            let what = format!("found {count} starts, expected 1 to {MOST_STARTS}");
             return Err(OptimisationError::Input(what));
         }
         Some(count) => Some(multi_start::starts(problem, count).map_err(|variable| {

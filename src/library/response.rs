@@ -4,7 +4,7 @@
 use super::SimulationError;
 use crate::adjoint::WeightedHistories;
 use crate::driver::integration::Integration;
-use crate::driver::{AnalysisFailure, Evaluated};
+use crate::driver::{AnalysisFailure, Evaluated, resolved};
 use crate::figures::elastic_figures::stresses;
 use crate::functions::Scene;
 use crate::functions::histories::{Readings, history};
@@ -31,7 +31,11 @@ pub fn simulate(problem: &Problem, x: &[f64]) -> Result<Motion, SimulationError>
     let mut integration = Integration::of(problem, None, false);
     let found = Evaluated::with(&mut integration, problem, x);
     let (evaluated, _) = found.map_err(AnalysisFailure::from)?;
-    Motion::new(Arc::new(problem.clone()), evaluated, None)
+    Ok(Motion::new(Arc::new(problem.clone()), evaluated))
+}
+
+fn is_inside(fraction: f64) -> bool {
+    (-ROUND_OFF..=1.0 + ROUND_OFF).contains(&fraction)
 }
 
 /// The motion of a design at some instants.
@@ -41,6 +45,8 @@ pub struct Motion {
     /// The instants as fractions of the duration, and as sums of samples.
     fractions: Vec<f64>,
     readings: Readings,
+    /// Whether the instants keep their time where the duration changes; else they keep their fraction of it.
+    are_fixed: bool,
     whole: OnceLock<Whole>,
 }
 
@@ -108,40 +114,57 @@ pub struct Cotangents {
 }
 
 impl Motion {
-    /// A motion at the instants `times` \[s\], or at those of tables and figures.
-    pub(super) fn new(
-        problem: Arc<Problem>,
-        at: Evaluated,
-        times: Option<&[f64]>,
-    ) -> Result<Self, SimulationError> {
+    /// A motion at the instants of tables and figures.
+    pub(super) fn new(problem: Arc<Problem>, at: Evaluated) -> Self {
         let run = &at.run;
-        let (fractions, readings) = match times {
-            None => {
-                let shown = run.shown().into_iter().map(|k| run.instants[k]);
-                (shown.collect(), Readings::shown(run))
-            }
-            Some(times) => {
-                let fraction = |&time: &f64| match time / run.duration {
-                    part if (-ROUND_OFF..=1.0 + ROUND_OFF).contains(&part) => {
-                        Ok(part.clamp(0.0, 1.0))
-                    }
-                    _ => Err(AnalysisFailure::Undefined(format!(
-                        "found the instant {time} s, expected one between 0 and the end of the motion, {} s",
-                        run.duration
-                    ))),
-                };
-                let fractions: Vec<f64> = times.iter().map(fraction).collect::<Result<_, _>>()?;
-                let readings = Readings::at(run, &fractions);
-                (fractions, readings)
-            }
-        };
-        Ok(Self {
+        let shown = run.shown().into_iter().map(|k| run.instants[k]);
+        Self {
+            fractions: shown.collect(),
+            readings: Readings::shown(run),
+            are_fixed: false,
             problem,
             at,
-            fractions,
-            readings,
             whole: OnceLock::new(),
-        })
+        }
+    }
+
+    /// The same motion at these instants \[s\]. They are fixed: where the duration depends on the design,
+    /// derivatives are those at these times.
+    ///
+    /// # Errors
+    /// An instant is not between 0 and the end.
+    pub fn at_times(self, times: &[f64]) -> Result<Self, String> {
+        let end = self.at.run.duration;
+        let fractions: Vec<f64> = times.iter().map(|time| time / end).collect();
+        let wrong = times.iter().zip(&fractions);
+        match wrong.into_iter().find(|(_, part)| !is_inside(**part)) {
+            None => Ok(self.read(fractions, true)),
+            Some((time, _)) => Err(format!(
+                "found the instant {time} s, expected one between 0 and the end of the motion, {end} s"
+            )),
+        }
+    }
+
+    /// The same motion at instants at these fractions of the duration, which they keep where it depends on the design.
+    ///
+    /// # Errors
+    /// A fraction is not between 0 and 1.
+    pub fn at_fractions(self, fractions: &[f64]) -> Result<Self, String> {
+        match fractions.iter().find(|part| !is_inside(**part)) {
+            None => Ok(self.read(fractions.to_vec(), false)),
+            Some(part) => Err(format!(
+                "found the fraction {part}, expected one between 0 and 1"
+            )),
+        }
+    }
+
+    fn read(mut self, mut fractions: Vec<f64>, are_fixed: bool) -> Self {
+        for part in &mut fractions {
+            *part = part.clamp(0.0, 1.0);
+        }
+        self.readings = Readings::at(&self.at.run, &fractions);
+        (self.fractions, self.are_fixed, self.whole) = (fractions, are_fixed, OnceLock::new());
+        self
     }
 
     /// Instants \[s\]: those that were requested, or from 0 to the end of the motion.
@@ -195,8 +218,9 @@ impl Motion {
     }
 
     /// Exact derivatives of functions of histories by the design, from their cotangents w: one row of
-    /// Σ w_k dg(t_k)/dx for each of `all`, in one backward march of the discrete adjoint. Where the duration
-    /// depends on the design, instants keep their fraction of it.
+    /// Σ w_k dg(t_k)/dx for each of `all`, in one backward march of the discrete adjoint. Where the duration depends
+    /// on the design, instants of [`Motion::at_times`] keep their time, others their fraction of it. With t = s T of
+    /// the part of the motion that moves, a fixed time has ds/dT = −(dt/dT)/T.
     ///
     /// # Errors
     /// The equations of a step are singular; a function has no history; or a list has another length than
@@ -225,10 +249,16 @@ impl Motion {
                 }
                 functions.push((*f, spread(name, weights)?));
             }
-            let times = match own.times.is_empty() {
+            let mut times = match own.times.is_empty() || self.are_fixed {
                 true => Vec::new(),
                 false => spread("time", &own.times)?,
             };
+            if self.are_fixed {
+                times = vec![0.0; self.at.run.last() + 1];
+                for (f, weights) in &own.functions {
+                    self.hold_times(*f, weights, &mut times);
+                }
+            }
             Ok(WeightedHistories { functions, times })
         };
         let all = all.iter().map(weighted).collect::<Result<_, _>>()?;
@@ -240,6 +270,34 @@ impl Motion {
                 "a derivative of the function of histories is not finite".to_owned(),
             )),
         }
+    }
+
+    /// Adds the weights of samples' instants by which the readings of a function keep their time.
+    fn hold_times(&self, function: usize, weights: &[f64], times: &mut [f64]) {
+        let Some(samples) = self.samples(function) else {
+            return;
+        };
+        let slopes = self.readings.slopes(&samples);
+        let by_time = weights.iter().zip(slopes);
+        let by_time: Vec<f64> = by_time
+            .map(|(w, slope)| -w * slope / self.at.run.duration)
+            .collect();
+        for (sum, by) in times.iter_mut().zip(self.readings.spread(&by_time)) {
+            *sum += by;
+        }
+    }
+
+    /// Why derivatives of the functions `which` mean nothing, if so: the time steps do not resolve them.
+    ///
+    /// # Errors
+    /// The equations of a step are singular.
+    pub fn unresolved(&self, which: &[usize]) -> Result<Option<String>, SimulationError> {
+        let gradients = self.gradients(which)?;
+        let found = resolved::of_gradients(&self.problem, &self.at, which, &gradients);
+        // Where the finer run fails this cannot be judged.
+        Ok(found
+            .ok()
+            .and_then(|own| resolved::refusal(&self.problem, &own)))
     }
 
     fn whole(&self) -> &Whole {

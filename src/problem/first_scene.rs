@@ -61,7 +61,7 @@ const PERPENDICULAR: f64 = 1e-9;
 
 /// The fault of a universal joint whose axes are not perpendicular in the placement.
 pub(super) fn oblique(problem: &Problem) -> Option<Finding> {
-    let start = problem.start();
+    let start = problem.start_numbers();
     let assembly = Assembly::new(&problem.written, &problem.order, &start);
     problem.written.joints.iter().find_map(|(name, joint)| {
         let [Some(axis), Some(cross)] = joint.axes() else {

@@ -28,7 +28,7 @@ macro_rules! scene_scalar {
             }
 
             fn static_scene(problem: &Problem, statics: &Statics, x: &[Self]) -> StaticScene<Self> {
-                statics.scene(&problem.written, x)
+                statics.scene(&problem.written, &problem.extended(x))
             }
         }
     };
@@ -38,7 +38,7 @@ scene_scalar!(Complex64);
 scene_scalar!(Dual);
 
 fn unlowered_scene<S: Scalar>(problem: &Problem, x: &[S]) -> Scene<S> {
-    let mut scene = scene::scene(&problem.written, &problem.order, x);
+    let mut scene = scene::scene(&problem.written, &problem.order, &problem.extended(x));
     for (joint, left_out) in scene.model.joints.iter_mut().zip(&problem.left_out) {
         let (rows, fit) = left_out;
         joint.redundant.clone_from(rows);

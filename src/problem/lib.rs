@@ -7,9 +7,11 @@
 mod beam;
 mod bounds;
 mod check;
+mod derived;
 mod drawing;
 mod elastic_drawing;
 pub mod elements;
+mod expression;
 mod fault;
 mod fibres;
 pub mod finding;
@@ -51,6 +53,7 @@ use flexbody_mathematics::math;
 use flexbody_mechanics::{functions, integrate, lower, model, structures, system};
 use flexbody_optimiser as optimiser;
 
+use derived::Derived;
 pub use drawing::{BarrierLine, Drawing, Outline};
 pub use elastic_drawing::{DeformedLine, ElasticPoint, Trace};
 pub use fault::{Fault, Faults};
@@ -59,7 +62,7 @@ pub use focus::Focus;
 pub use instances::SceneScalar;
 pub use memory::available as available_memory;
 pub use overrides::{Override, OverrideError};
-pub use schema::schema;
+pub use schema::{schema, schema_with_expressions};
 pub use statics::{Asked, Moved, StaticScene, Statics, Workspace};
 pub use text::{visible, visible_lines};
 pub use variables::Variable;
@@ -75,7 +78,9 @@ use crate::structures::quality::MeshFault;
 use crate::structures::structure::Structure;
 use crate::system::equilibrium;
 use crate::system::left_out::Redundancy;
+use model::Model;
 use schema::{Document, View};
+use std::borrow::Cow;
 use std::path::Path;
 use std::sync::Arc;
 
@@ -198,6 +203,8 @@ pub struct Problem {
     pub lowering: Option<Lowering>,
     /// The requested functions and the bodies on which they depend; `None` for all.
     pub focus: Option<Focus>,
+    /// Numbers that expressions give.
+    derived: Derived,
     /// Structures under load cases; then nothing moves, and there are no scenes.
     pub statics: Option<Arc<Statics>>,
 }
@@ -291,7 +298,7 @@ impl Problem {
     /// # Errors
     /// The faults of the finer meshes.
     pub fn cut_statics(&self, cuts: usize) -> Result<Statics, Vec<(String, MeshFault)>> {
-        Statics::new(&self.written, &self.start(), cuts)
+        Statics::new(&self.written, &self.start_numbers(), cuts)
     }
 
     /// Σ ((x − x0)/scale)² of a design of a file without objective.
@@ -312,7 +319,7 @@ impl Problem {
         };
         let all = self.variables.iter().enumerate();
         let which: Vec<usize> = all.filter(|(_, v)| moves(v)).map(|(i, _)| i).collect();
-        statics.moved(&self.written, x, &which)
+        statics.moved(&self.written, x, &self.derived, &which)
     }
 
     /// Derivatives by the design variables, from those by structure and loads.
@@ -322,7 +329,8 @@ impl Problem {
         moved: &Moved,
         gradient: (&Structure<f64>, &[Vec<Load<f64>>]),
     ) -> statics::PulledBack {
-        statics.pull_back(&self.written, self.variables.len(), moved, gradient)
+        let count = (self.variables.len(), self.derived.count());
+        statics.pull_back(&self.written, count, moved, gradient)
     }
 
     /// The reduced scene at the design `x`, analytic in `x`. `x` has one component per variable, in
@@ -355,11 +363,31 @@ impl Problem {
         })
     }
 
+    /// The design `x`, then the numbers that expressions give.
+    fn extended<'x, S: Scalar>(&self, x: &'x [S]) -> Cow<'x, [S]> {
+        self.derived.extend(x)
+    }
+
+    /// The design in the file, then the numbers that expressions give.
+    fn start_numbers(&self) -> Vec<f64> {
+        self.extended(&self.start()).into_owned()
+    }
+
+    /// The first expression without a finite value at the design `x`, in words.
+    pub fn undefined_expression(&self, x: &[f64]) -> Option<String> {
+        self.derived.undefined(x)
+    }
+
+    /// The model whose bodies are as placed.
+    fn as_placed(&self, x: &[f64]) -> Model<f64> {
+        scene::scene(&self.written, &self.order, &self.extended(x)).model
+    }
+
     /// The fastest growth \[1/s\] of a deformation at the start in equilibrium; `None` if none grows, or
     /// if there is no such start.
     pub fn growth_at_equilibrium(&self, x: &[f64]) -> Option<f64> {
         let placed = self.without_equilibrium()?;
-        let model = scene::scene(&placed.written, &placed.order, x).model;
+        let model = placed.as_placed(x);
         let found = equilibrium::growth(&model, &self.written.known_starts);
         found.ok().flatten()
     }
@@ -368,7 +396,7 @@ impl Problem {
     /// (see [`equilibrium::left_out`]); `None` if there is no such start.
     pub fn unsteady_at_equilibrium(&self, x: &[f64]) -> Option<Vec<(String, f64)>> {
         let placed = self.without_equilibrium()?;
-        let model = scene::scene(&placed.written, &placed.order, x).model;
+        let model = placed.as_placed(x);
         let parts = equilibrium::left_out(&model, &self.written.known_starts).ok()?;
         let names = model.flexible.iter().map(|body| body.name.clone());
         Some(names.zip(parts).collect())
@@ -388,7 +416,7 @@ impl Problem {
     /// By body: velocity [m/s] and angular velocity [rad/s] in ground axes, if the file gives them
     /// for this body and starts of joints may replace them.
     pub fn own_velocities(&self, x: &[f64]) -> Vec<Option<[Vec3<f64>; 2]>> {
-        scene::own_velocities(&self.written, x)
+        scene::own_velocities(&self.written, &self.extended(x))
     }
 
     /// Whether bodies have files of their own.
@@ -411,7 +439,7 @@ impl Problem {
 
     /// The flexible bodies at the design `x`: their coordinates and natural frequencies.
     pub fn flexible_bodies(&self, x: &[f64]) -> Vec<String> {
-        flexible::described(&self.written, x)
+        flexible::described(&self.written, &self.extended(x))
     }
 
     /// The problem with richer reduced bases, made at the design `x`, and with shells that are not rigid.
@@ -445,7 +473,7 @@ impl Problem {
         }
         let bodies = written.bodies.values_mut();
         for elements in bodies.filter_map(|body| body.elements.as_mut()) {
-            elements.design = Some(x.to_vec());
+            elements.design = Some(self.extended(x).into_owned());
         }
         Some(read::remade(self, written))
     }
@@ -467,11 +495,11 @@ impl Problem {
 
     /// The data of a plot of the motion at the design `x`.
     pub fn drawing(&self, x: &[f64]) -> Drawing {
-        drawing::drawing(&self.written, &self.order, x)
+        drawing::drawing(&self.written, &self.order, &self.extended(x))
     }
 
     /// Stresses along fibres of the beams of each body of the file at the design `x`.
     pub fn fibres(&self, x: &[f64]) -> Vec<Vec<BeamFibres>> {
-        fibres::fibres(&self.written, x)
+        fibres::fibres(&self.written, &self.extended(x))
     }
 }

@@ -16,7 +16,7 @@ impl Problem {
     }
 
     fn inertias(&self) -> impl Iterator<Item = String> {
-        let start = self.start();
+        let start = self.start_numbers();
         self.written.bodies.iter().filter_map(move |(name, body)| {
             body.inertia.as_ref()?;
             let excess = excess_of_inertia(&mass::mass_properties(body, &start).inertia);

@@ -23,7 +23,7 @@ const SAME: f64 = 1e-9;
 
 /// The first beam that is held beyond its ends, where its shapes are not defined.
 pub(super) fn off_beams(problem: &Problem) -> Option<Finding> {
-    let model = problem.scene(&problem.start()).model;
+    let model = problem.scene(&problem.start_numbers()).model;
     model.joints.iter().find_map(|joint| {
         joint.modes.as_ref()?;
         let (name, body) = problem.written.bodies.get_index(joint.body_a)?;
@@ -95,7 +95,7 @@ pub(super) fn off_points(problem: &Problem) -> Option<Finding> {
     if twice.is_some() {
         return twice;
     }
-    let (_, places) = scene::with_places(document, &problem.order, &problem.start());
+    let (_, places) = scene::with_places(document, &problem.order, &problem.start_numbers());
     places.into_iter().find_map(|place| {
         let HeldPlace {
             holder,
@@ -156,7 +156,7 @@ pub(super) fn moved_places(problem: &Problem) -> Option<Finding> {
         let seed = |(j, &x): (usize, &f64)| Dual::new(x, if i == j { 1.0 } else { 0.0 });
         let x: Vec<Dual> = start.iter().enumerate().map(seed).collect();
         let change = variable.scale.max(variable.start.abs());
-        let (_, places) = scene::with_places(document, &problem.order, &x);
+        let (_, places) = scene::with_places(document, &problem.order, &problem.extended(&x));
         places.into_iter().find_map(|place| {
             let (name, body) = document.bodies.get_index(place.body)?;
             let (node, size) = match (&body.elements, &body.modal) {
@@ -201,7 +201,7 @@ pub(super) fn off_interfaces(problem: &Problem) -> Option<Finding> {
     if !written.bodies.values().any(|body| body.modal.is_some()) {
         return None;
     }
-    let start = problem.start();
+    let start = problem.start_numbers();
     let scene = problem.unlowered_scene::<f64>(&start);
     let near = |name: &str, point: &Vec3<f64>| {
         let modal = written.bodies.get(name)?.modal.as_ref()?;
@@ -285,7 +285,7 @@ pub(super) fn beside(problem: &Problem) -> Option<Finding> {
     if !written.bodies.keys().any(|name| is_point(name)) {
         return None;
     }
-    let start = problem.start();
+    let start = problem.start_numbers();
     let assembly = Assembly::new(written, &problem.order, &start);
     let near = SAME * length_scale(&problem.scene(&start).model);
     let away = |pointer: String, name: &str, offset: Vec3<f64>| {

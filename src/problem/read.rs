@@ -2,6 +2,7 @@
 
 use super::bounds;
 use super::check::check;
+use super::derived::{Derived, Expressions};
 use super::elements;
 use super::fault::Faults;
 use super::finding::{Finding, Part};
@@ -94,9 +95,27 @@ pub(super) fn parse(written: &str, file: &str, overrides: &[Override]) -> Result
         findings.extend(change.apply(&mut document).err());
     }
     findings.extend(text::faults(&document));
-    let structure = walk(&document, schema::schema());
-    findings.extend(structure.findings.iter().cloned());
+    let mut structure = walk(&document, schema::schema());
     let faults = |findings| Err(Faults::locate(findings, file, &source, overrides));
+    let mut expressions = Expressions::default();
+    let original = match structure.expressions.is_empty() {
+        true => None,
+        false => {
+            let whole = document.clone();
+            expressions = match Expressions::evaluate(&document, &structure, &source) {
+                Ok(expressions) => expressions,
+                Err(wrong) => {
+                    findings.extend(structure.findings);
+                    findings.extend(wrong);
+                    return faults(findings);
+                }
+            };
+            expressions.replace(&mut document);
+            structure = walk(&document, schema::schema());
+            Some(whole)
+        }
+    };
+    findings.extend(structure.findings.iter().cloned());
     let mut sound = document.clone();
     let Value::Object(entries) = &mut sound else {
         return faults(findings);
@@ -115,13 +134,13 @@ pub(super) fn parse(written: &str, file: &str, overrides: &[Override]) -> Result
         false => String::new(),
     };
     findings.extend(check(&written, &damage));
-    let (variables, wrong) = variables(&written, &document, &structure);
+    let (variables, wrong) = variables(&written, (&document, &structure), &expressions);
     findings.extend(wrong);
     if !findings.is_empty() {
         return faults(findings);
     }
     let shells = written.bodies.values().any(|body| body.elements.is_some());
-    let variables = match written.structures.is_empty() && !shells {
+    let mut variables = match written.structures.is_empty() && !shells {
         true => variables,
         false => match per_thickness::expand(&written, &mut sound)
             .and_then(|()| expand(&written, &mut sound, variables))
@@ -130,13 +149,19 @@ pub(super) fn parse(written: &str, file: &str, overrides: &[Override]) -> Result
             Err(finding) => return faults(vec![finding]),
         },
     };
+    let derived = match expressions.bind(&mut sound, &mut variables, &structure) {
+        Ok(derived) => derived,
+        Err(findings) => return faults(findings),
+    };
     bind(&mut sound, &variables);
     let order = placement_order(&written).expect("a checked document has no circle of places");
     match deserialise(&sound) {
         Ok(mut bound) => {
             modal::share(&written, &mut bound);
             elements::share(&written, &mut bound);
+            let document = original.unwrap_or(document);
             let mut problem = problem(document, (bound, &content), order, variables);
+            problem.derived = derived;
             if !problem.written.structures.is_empty() {
                 return match of_structures(&mut problem) {
                     Ok(()) => Ok(problem),
@@ -186,7 +211,7 @@ pub(super) fn parse(written: &str, file: &str, overrides: &[Override]) -> Result
 
 /// Completes a problem of structures, or reports the faults of their meshes and supports.
 fn of_structures(problem: &mut Problem) -> Result<(), Vec<Finding>> {
-    let start = problem.start();
+    let start = problem.start_numbers();
     let mut statics = Statics::new(&problem.written, &start, 1).map_err(|found| {
         let of = |(name, fault): &(String, MeshFault)| {
             let pointer = join(&join("/structures", name), "mesh");
@@ -387,6 +412,7 @@ fn problem(
         redundant: Vec::new(),
         left_out: Vec::new(),
         lowering: None,
+        derived: Derived::default(),
         focus: None,
         statics: None,
     }

@@ -9,6 +9,7 @@ use crate::structures::beam::{Section, SectionFault, SectionValues};
 impl Problem {
     /// The first body whose section cannot be built at the design `x`, and why.
     pub fn impossible_section(&self, x: &[f64]) -> Option<(String, SectionFault)> {
+        let x = &*self.extended(x);
         self.written.bodies.iter().find_map(|(name, body)| {
             let of_beam = body
                 .beam

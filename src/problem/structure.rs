@@ -2,6 +2,7 @@
 //!
 //! It supports only the part of JSON Schema that the schema of problem files uses.
 
+use super::derived::MARK;
 use super::finding::Finding;
 use super::pointer::{advice, join, nearest};
 use indexmap::IndexMap;
@@ -30,6 +31,8 @@ pub struct Structure {
     pub findings: Vec<Finding>,
     /// Numbers by pointer.
     pub numbers: IndexMap<String, Number>,
+    /// Pointers to expressions in the place of a number.
+    pub expressions: Vec<String>,
 }
 
 /// Checks a document.
@@ -110,8 +113,15 @@ impl<'a> Walker<'a> {
             let choices = choices.iter().map(|choice| self.follow(choice));
             return match choices.clone().find(|choice| kind_fits(value, choice)) {
                 Some(choice) => self.value(value, choice, pointer),
+                None if is_expression(value) && choices.clone().any(is_of_number) => {
+                    self.structure.expressions.push(pointer.to_owned());
+                }
                 None => self.wrong(value, schema, pointer),
             };
+        }
+        if is_expression(value) && is_of_number(schema) {
+            self.structure.expressions.push(pointer.to_owned());
+            return;
         }
         if !kind_fits(value, schema) {
             return self.wrong(value, schema, pointer);
@@ -344,6 +354,16 @@ fn alternatives(schema: &Value) -> Option<Alternatives<'_>> {
         }
     }
     Some(found)
+}
+
+/// Whether a value is an expression.
+fn is_expression(value: &Value) -> bool {
+    value.as_str().is_some_and(|text| text.starts_with(MARK))
+}
+
+/// Whether a schema is that of a number.
+fn is_of_number(schema: &Value) -> bool {
+    matches!(schema["type"].as_str(), Some("number" | "integer"))
 }
 
 /// Whether a value has the type of the schema.

@@ -3,6 +3,7 @@
 //! `read::parse` calls `bind`. Then `Quantity::get(x)` returns x_i (quantity.rs), and
 //! driver/evaluate.rs (`derivatives`, `parameter_derivatives`) sums ∂f/∂p · ∂p/∂x_i.
 
+use super::derived::Expressions;
 use super::finding::Finding;
 use super::overrides::nearest_path;
 use super::pointer::{is_below, join, keys, nearest_pointer};
@@ -45,12 +46,13 @@ pub(super) fn bind(document: &mut Value, variables: &[Variable]) {
 /// The variables of a document, and their faults.
 pub(super) fn variables(
     written: &Document,
-    document: &Value,
-    structure: &Structure,
+    (document, structure): (&Value, &Structure),
+    expressions: &Expressions,
 ) -> (Vec<Variable>, Vec<Finding>) {
     let mut checker = Checker {
         document,
         structure,
+        expressions,
         owners: HashMap::new(),
         findings: Vec::new(),
     };
@@ -65,6 +67,7 @@ pub(super) fn variables(
 struct Checker<'a> {
     document: &'a Value,
     structure: &'a Structure,
+    expressions: &'a Expressions,
     /// By path: the variable that owns it.
     owners: HashMap<String, String>,
     findings: Vec<Finding>,
@@ -168,6 +171,12 @@ impl<'a> Checker<'a> {
             return None;
         }
         if self.is_damaged(path) {
+            return None;
+        }
+        if self.expressions.gives(path) {
+            let found = format!("{path}, which an expression gives");
+            let hint = "point at a parameter of the expression, such as /parameters/length";
+            self.fault(Finding::new(place, found, expected).hint(Some(hint.to_owned())));
             return None;
         }
         let numbers = &self.structure.numbers;

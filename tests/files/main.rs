@@ -20,6 +20,7 @@ mod element_sections;
 mod element_starts;
 mod element_steps;
 mod equilibrium;
+mod expressions;
 mod faults;
 pub mod finite_elements;
 mod fixed_steps;

@@ -21,6 +21,9 @@ pub fn check(
     let columns: Result<Vec<Vec<f64>>, StaticsFailure> = (0..count)
         .into_par_iter()
         .map(|i| {
+            if problem.simulation.limits.is_over() {
+                return Err(StaticsFailure::Interrupted);
+            }
             let mut direction = vec![0.0; count];
             direction[i] = 1.0;
             along(problem, at, &which, &direction)

@@ -20,6 +20,7 @@ impl StaticDesign {
     pub fn lowest_modes(&mut self, count: usize) -> Result<Modes, StaticsFailure> {
         let (statics, structure) = (self.statics.clone(), self.scene.structure.clone());
         let modal = of_modes(self.workspace(), &statics, &structure)?;
+        let count = count.min(modal.unknowns());
         Ok(modal.solve_at_most(&structure, count)?)
     }
 

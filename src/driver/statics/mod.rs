@@ -31,6 +31,15 @@ pub enum StaticsFailure {
     /// Sections or inertias of this design.
     #[error("the design cannot be built: {0}")]
     Properties(#[from] PropertyFault),
+    /// A signal.
+    #[error("the analysis was interrupted")]
+    Interrupted,
+    /// A number is not defined.
+    #[error("{what}")]
+    Undefined {
+        /// Which, and its value.
+        what: String,
+    },
     /// A load case.
     #[error("load case \"{case}\": {failure}")]
     Case {
@@ -153,6 +162,12 @@ impl StaticDesign {
         x: &[f64],
         asked: Option<&[usize]>,
     ) -> Result<Self, StaticsFailure> {
+        if problem.simulation.limits.is_over() {
+            return Err(StaticsFailure::Interrupted);
+        }
+        if let Some(what) = problem.undefined_expression(x) {
+            return Err(StaticsFailure::Undefined { what });
+        }
         let scene: StaticScene<f64> = problem.static_scene(statics, x);
         let moves = |path: &String| path.contains("/mesh/");
         if problem.variables.iter().any(|v| v.paths.iter().any(moves))

@@ -27,54 +27,64 @@ pub fn history(
 /// derivatives of the samples give theirs exactly.
 #[derive(Clone, Debug)]
 pub struct Readings {
-    /// By instant: pairs (sample, weight).
-    of: Vec<Vec<(usize, f64)>>,
-    /// The same by a polynomial with one sample less, for the error.
-    coarser: Vec<Vec<(usize, f64)>>,
+    of: Vec<Reading>,
     samples: usize,
 }
+
+/// An instant: pairs (sample, weight).
+#[derive(Clone, Debug)]
+struct Reading {
+    value: Weights,
+    /// The value by a polynomial with one sample less, for the error.
+    coarser: Weights,
+    /// The derivative of the polynomial by the fraction of the duration.
+    slope: Weights,
+}
+
+type Weights = Vec<(usize, f64)>;
 
 impl Readings {
     /// The samples that tables and figures show.
     pub fn shown(run: &Trajectory<f64>) -> Self {
-        let of: Vec<_> = run.shown().into_iter().map(|k| vec![(k, 1.0)]).collect();
-        Self {
-            coarser: of.clone(),
-            of,
-            samples: run.last() + 1,
-        }
+        let shown = run.shown();
+        let fractions: Vec<f64> = shown.iter().map(|&k| run.instants[k]).collect();
+        Self::at(run, &fractions)
     }
 
     /// Instants at these fractions of the duration, by polynomials through the shown samples that do
     /// not reach across kinks.
     pub fn at(run: &Trajectory<f64>, fractions: &[f64]) -> Self {
         let shown = run.shown();
-        let (of, coarser) = fractions.iter().map(|&at| reading(run, &shown, at)).unzip();
+        let of = fractions.iter().map(|&at| reading(run, &shown, at));
         Self {
-            of,
-            coarser,
+            of: of.collect(),
             samples: run.last() + 1,
         }
     }
 
     /// The values at the instants, from those of the samples.
     pub fn values(&self, samples: &[f64]) -> Vec<f64> {
-        self.of.iter().map(|of| sum(of, samples)).collect()
+        let value = |own: &Reading| sum(&own.value, samples);
+        self.of.iter().map(value).collect()
+    }
+
+    /// Derivatives of the values by the fraction of the duration.
+    pub fn slopes(&self, samples: &[f64]) -> Vec<f64> {
+        let slope = |own: &Reading| sum(&own.slope, samples);
+        self.of.iter().map(slope).collect()
     }
 
     /// Largest estimated error of the values by the polynomials between the samples.
     pub fn error(&self, samples: &[f64]) -> f64 {
-        let both = self.of.iter().zip(&self.coarser);
-        let error =
-            |(of, coarser): (&Vec<_>, &Vec<_>)| (sum(of, samples) - sum(coarser, samples)).abs();
-        both.map(error).fold(0.0, f64::max)
+        let error = |own: &Reading| (sum(&own.value, samples) - sum(&own.coarser, samples)).abs();
+        self.of.iter().map(error).fold(0.0, f64::max)
     }
 
     /// The weights of the samples that stand for weights of the instants.
     pub fn spread(&self, weights: &[f64]) -> Vec<f64> {
         let mut all = vec![0.0; self.samples];
-        for (of, weight) in self.of.iter().zip(weights) {
-            for &(k, part) in of {
+        for (own, weight) in self.of.iter().zip(weights) {
+            for &(k, part) in &own.value {
                 all[k] += weight * part;
             }
         }
@@ -91,26 +101,41 @@ fn sum(of: &[(usize, f64)], samples: &[f64]) -> f64 {
     of.iter().map(|&(k, weight)| weight * samples[k]).sum()
 }
 
-type Weights = Vec<(usize, f64)>;
-
-/// The weights of the samples `shown` at the fraction `at`, and those without the farthest one.
-fn reading(run: &Trajectory<f64>, shown: &[usize], at: f64) -> (Weights, Weights) {
+/// The instant at the fraction `at`, from the samples `shown`.
+fn reading(run: &Trajectory<f64>, shown: &[usize], at: f64) -> Reading {
     let place = |i: usize| run.instants[shown[i]];
     let next = shown.partition_point(|&k| run.instants[k] < at - SAME);
     let next = next.min(shown.len() - 1);
-    if next == 0 || (place(next) - at).abs() <= SAME {
-        let exact = vec![(shown[next], 1.0)];
-        return (exact.clone(), exact);
+    let exact = (place(next) - at).abs() <= SAME;
+    // A single sample has no polynomial.
+    if shown.len() == 1 {
+        let only = vec![(shown[0], 1.0)];
+        return Reading {
+            value: only.clone(),
+            coarser: only,
+            slope: Vec::new(),
+        };
     }
-    let part = run.grid.part(place(next - 1));
-    let (mut first, mut last) = (next - 1, next);
+    let before = next.saturating_sub(1);
+    let part = run.grid.part(place(before));
+    let (mut first, mut last) = (before, next.max(1));
     while first > 0 && next - first < BESIDE && run.grid.part(place(first - 1)) == part {
         first -= 1;
     }
-    while last + 1 < shown.len() && last - next + 1 < BESIDE && run.grid.part(place(last)) == part {
+    while last + 1 < shown.len() && last + 1 < next + BESIDE && run.grid.part(place(last)) == part {
         last += 1;
     }
     let nodes: Vec<usize> = (first..=last).collect();
+    let slope = slopes(&nodes, at, place).map(|(i, weight)| (shown[i], weight));
+    let slope: Weights = slope.collect();
+    if exact {
+        let only = vec![(shown[next], 1.0)];
+        return Reading {
+            value: only.clone(),
+            coarser: only,
+            slope,
+        };
+    }
     let away = |i: usize| (place(i) - at).abs();
     let farthest = match away(first) > away(last) {
         true => first,
@@ -125,5 +150,26 @@ fn reading(run: &Trajectory<f64>, shown: &[usize], at: f64) -> (Weights, Weights
         };
         nodes.iter().map(weight).collect()
     };
-    (lagrange(&nodes), lagrange(&fewer))
+    Reading {
+        value: lagrange(&nodes),
+        coarser: lagrange(&fewer),
+        slope,
+    }
+}
+
+/// The derivative at `at` of the polynomial through nodes at `place`: pairs (node, weight).
+fn slopes(
+    nodes: &[usize],
+    at: f64,
+    place: impl Fn(usize) -> f64,
+) -> impl Iterator<Item = (usize, f64)> {
+    nodes.iter().map(move |&j| {
+        let others = || nodes.iter().copied().filter(move |&i| i != j);
+        let one = |m: usize| {
+            let rest = others().filter(|&i| i != m);
+            let factor = 1.0 / (place(j) - place(m));
+            rest.fold(factor, |w, i| w * (at - place(i)) / (place(j) - place(i)))
+        };
+        (j, others().map(one).sum())
+    })
 }

@@ -249,6 +249,12 @@ pub enum IntegrationFailure {
         /// The body.
         body: String,
     },
+    /// A number of the scene is not defined.
+    #[error("{what}")]
+    Undefined {
+        /// Which, and its value.
+        what: String,
+    },
     /// The section of a beam cannot be built.
     #[error("body \"{body}\" has a section with {fault}")]
     Section {

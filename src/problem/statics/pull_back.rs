@@ -6,6 +6,7 @@
 
 use super::properties::{quantities, section, thickness};
 use super::{StaticScene, Statics};
+use crate::derived::Derived;
 use crate::math::{Dual, Scalar};
 use crate::schema::Document;
 use crate::structures::loads::Load;
@@ -25,8 +26,9 @@ impl PulledBack {
     }
 }
 
-/// Derivatives of the numbers except thickness and sections in some variables.
-pub struct Moved(Vec<(usize, Vec<f64>)>);
+/// Derivatives in some variables: of the numbers except thickness and sections, and of numbers that expressions
+/// give.
+pub struct Moved(Vec<(usize, [Vec<f64>; 2])>);
 
 impl Moved {
     /// Whether thickness and sections are all that a design moves.
@@ -67,14 +69,21 @@ impl<'a, S: Scalar, I: Iterator<Item = &'a crate::math::Vec3<S>>> FlattenXyz<S> 
 
 impl Statics {
     /// Derivatives of the numbers except thickness and sections in the variables `which`.
-    pub fn moved(&self, document: &Document, x: &[f64], which: &[usize]) -> Moved {
+    pub fn moved(
+        &self,
+        document: &Document,
+        x: &[f64],
+        derived: &Derived,
+        which: &[usize],
+    ) -> Moved {
         let one = |&i: &usize| {
             let seeded = x.iter().enumerate();
             let seeded = seeded.map(|(j, &x)| Dual::new(x, f64::from(u8::from(i == j))));
             let seeded: Vec<Dual> = seeded.collect();
-            let StaticScene { structure, cases } = self.scene(document, &seeded);
+            let StaticScene { structure, cases } = self.scene(document, &derived.extend(&seeded));
             let all = others(&structure, &cases);
-            (i, all.into_iter().map(|number| number.du).collect())
+            let numbers = all.into_iter().map(|number| number.du).collect();
+            (i, [numbers, derived.by_variable(x, i)])
         };
         Moved(which.iter().map(one).collect())
     }
@@ -83,13 +92,14 @@ impl Statics {
     pub fn pull_back(
         &self,
         document: &Document,
-        variables: usize,
+        (variables, derived): (usize, usize),
         moved: &Moved,
         gradient: (&Structure<f64>, &[Vec<Load<f64>>]),
     ) -> PulledBack {
+        // Thickness and sections may be numbers that expressions give, which stand behind the variables.
         let mut all = PulledBack {
-            values: vec![0.0; variables],
-            terms: vec![0.0; variables],
+            values: vec![0.0; variables + derived],
+            terms: vec![0.0; variables + derived],
         };
         for (&(s, slot), &by) in self.shells.iter().zip(&gradient.0.thickness) {
             if let Some(variable) = thickness(&document.structures[s], slot).variable {
@@ -109,8 +119,10 @@ impl Statics {
             }
         }
         let by = others(gradient.0, gradient.1);
-        for (variable, numbers) in &moved.0 {
-            for (a, b) in by.iter().zip(numbers) {
+        let by_derived = all.values.split_off(variables);
+        all.terms.truncate(variables);
+        for (variable, [numbers, derived]) in &moved.0 {
+            for (a, b) in by.iter().zip(numbers).chain(by_derived.iter().zip(derived)) {
                 all.add(*variable, a * b);
             }
         }
