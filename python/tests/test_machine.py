@@ -429,3 +429,30 @@ def test_files_are_whole_or_not_written(tmp_path: Path, monkeypatch: pytest.Monk
 def test_representation() -> None:
     assert repr(pendulum()) == "<Machine 'pendulum': 2 bodies, 2 joints, 1 functions, 1 variables>"
     assert repr(Machine("new")) == "<Machine 'new': empty>"
+
+
+def test_parameters_and_expressions() -> None:
+    """The length of a link carries its ends: a variable of the parameter moves them all."""
+    machine = Machine("link", gravity=[0, -9.81, 0])
+    length = machine.add_parameter("L", 0.8)
+    machine.add_parameter("half", "= L/2")
+    body = machine.add_body(
+        "link",
+        shape=shapes.box(size=["= L", 0.1, 0.1]),
+        mass="= 3*L",
+        points={"pin": ["= -half", 0, 0], "tip": ["= half", 0, 0]},
+        place=place(put="pin", at=[0, 0, 0]),
+    )
+    machine.add_joint("hinge", joints.revolute(between=[body, "ground"], at=body.point("pin"), axis=[0, 0, 1]))
+    machine.set_simulation(duration="= 1/4")
+    machine.add_function("mass", functions.mass)
+    machine.add_function("tip", functions.final(quantities.position(body=body, point="tip", direction=[1, 0, 0])))
+    machine.add_variable("length", path=length.path(), lower=0.5, upper=1)
+    problem = machine.problem()
+    assert problem.variables.units == ("m",)
+    assert problem.values(functions=["mass"])[0] == pytest.approx(2.4)
+    assert problem.gradients(functions=["mass"])[0, 0] == pytest.approx(3.0)
+    assert problem.check().passed
+    machine.add_body("faulty", shape=shapes.sphere(radius="= LL"), mass=1)
+    with pytest.raises(ProblemError, match='found the name "LL".*\n.*add_body'):
+        machine.problem()

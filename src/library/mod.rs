@@ -7,7 +7,7 @@
 //! | File | Content |
 //! |---|---|
 //! | `analysis` | consecutive designs: values and gradients |
-//! | `response` | a motion, histories and their pull-back |
+//! | `response`, `states` | a motion: histories and their pull-back; states of all bodies |
 //! | `rest` | structures under load cases, and modes |
 //! | `optimum` | optimisation, from one start or several |
 //! | `logs`, `written` | the files of an optimisation |
@@ -19,6 +19,7 @@ pub(crate) mod made;
 pub(crate) mod optimum;
 mod response;
 mod rest;
+mod states;
 pub(crate) mod written;
 
 use crate::driver;
@@ -32,8 +33,9 @@ pub use optimum::{
     Iteration, OptimisationError, OptimisationOptions, Optimum, optimise, optimise_with,
     page_of_design,
 };
-pub use response::{BodyState, Cotangents, ElasticStates, Energies, Motion, Reactions, simulate};
+pub use response::{Cotangents, Motion, simulate};
 pub use rest::{CaseAtRest, Mode, Rest, modes, rest, start_states};
+pub use states::{BodyState, ElasticStates, Energies, Reactions};
 pub use written::PageError;
 
 /// The reason why a design could not be simulated or differentiated, with time and place.

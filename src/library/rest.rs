@@ -1,7 +1,7 @@
 //! Structures at rest under load cases, their modes, and the start of a motion in equilibrium.
 
 use super::SimulationError;
-use super::response::BodyState;
+use super::states::BodyState;
 use crate::driver::statics::StaticDesign;
 use crate::driver::{AnalysisFailure, Simulated};
 use crate::figures::statics::fields::stresses;

@@ -5,7 +5,7 @@
 //! design variable are bound to places behind the variables: a design x becomes
 //! x, d_0(x), d_1(x), …, in any scalar. So derivatives follow as those of variables do.
 
-use super::expression::{Expression, is_name, reserved};
+use super::expression::{Expression, MARK, is_name, reserved};
 use super::finding::{Finding, Part};
 use super::pointer::{advice, join, keys};
 use super::source::Source;
@@ -17,8 +17,6 @@ use indexmap::IndexMap;
 use serde_json::{Map, Number, Value};
 use std::borrow::Cow;
 
-/// Mark at the beginning of an expression.
-pub const MARK: char = '=';
 /// Most faults of bounds that are reported.
 const MOST_BOUNDS: usize = 5;
 /// Largest whole number that a floating-point number holds exactly.

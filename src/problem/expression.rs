@@ -12,6 +12,8 @@ use crate::math::Scalar;
 use std::f64::consts::PI;
 use std::ops::Range;
 
+/// Mark at the beginning of an expression in a file.
+pub const MARK: char = '=';
 /// Deepest nesting of parentheses, signs and powers.
 const DEEPEST: usize = 50;
 /// Largest whole exponent that multiplies; others take exp(b ln a).

@@ -134,7 +134,9 @@ pub(super) fn parse(written: &str, file: &str, overrides: &[Override]) -> Result
         false => String::new(),
     };
     findings.extend(check(&written, &damage));
-    let (variables, wrong) = variables(&written, (&document, &structure), &expressions);
+    let (variables, wrong) = variables(&written, (&document, &structure), &|path| {
+        expressions.gives(path)
+    });
     findings.extend(wrong);
     if !findings.is_empty() {
         return faults(findings);

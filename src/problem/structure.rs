@@ -2,7 +2,7 @@
 //!
 //! It supports only the part of JSON Schema that the schema of problem files uses.
 
-use super::derived::MARK;
+use super::expression::MARK;
 use super::finding::Finding;
 use super::pointer::{advice, join, nearest};
 use indexmap::IndexMap;

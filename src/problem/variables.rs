@@ -3,7 +3,6 @@
 //! `read::parse` calls `bind`. Then `Quantity::get(x)` returns x_i (quantity.rs), and
 //! driver/evaluate.rs (`derivatives`, `parameter_derivatives`) sums ∂f/∂p · ∂p/∂x_i.
 
-use super::derived::Expressions;
 use super::finding::Finding;
 use super::overrides::nearest_path;
 use super::pointer::{is_below, join, keys, nearest_pointer};
@@ -43,16 +42,16 @@ pub(super) fn bind(document: &mut Value, variables: &[Variable]) {
     }
 }
 
-/// The variables of a document, and their faults.
+/// The variables of a document, and their faults; `is_given` tells the numbers that expressions give.
 pub(super) fn variables(
     written: &Document,
     (document, structure): (&Value, &Structure),
-    expressions: &Expressions,
+    is_given: &dyn Fn(&str) -> bool,
 ) -> (Vec<Variable>, Vec<Finding>) {
     let mut checker = Checker {
         document,
         structure,
-        expressions,
+        is_given,
         owners: HashMap::new(),
         findings: Vec::new(),
     };
@@ -67,7 +66,8 @@ pub(super) fn variables(
 struct Checker<'a> {
     document: &'a Value,
     structure: &'a Structure,
-    expressions: &'a Expressions,
+    /// Whether an expression gives the number at a pointer.
+    is_given: &'a dyn Fn(&str) -> bool,
     /// By path: the variable that owns it.
     owners: HashMap<String, String>,
     findings: Vec<Finding>,
@@ -173,7 +173,7 @@ impl<'a> Checker<'a> {
         if self.is_damaged(path) {
             return None;
         }
-        if self.expressions.gives(path) {
+        if (self.is_given)(path) {
             let found = format!("{path}, which an expression gives");
             let hint = "point at a parameter of the expression, such as /parameters/length";
             self.fault(Finding::new(place, found, expected).hint(Some(hint.to_owned())));
