@@ -240,8 +240,16 @@ impl Expressions {
                     places.insert(name, place);
                 }
                 None => {
-                    if let Some(entry) = document.pointer_mut(pointer) {
-                        *entry = Quantity::bound(place, *value);
+                    let entries = entries(document, pointer);
+                    if entries.is_empty() {
+                        let found = "an expression that changes with a design variable";
+                        let expected = "a number that is written out";
+                        findings.push(Finding::new(pointer, found, expected));
+                    }
+                    for entry in entries {
+                        if let Some(entry) = document.pointer_mut(&entry) {
+                            *entry = Quantity::bound(place, *value);
+                        }
                     }
                 }
             }
@@ -265,12 +273,14 @@ fn share_unit(
     let [name, others @ ..] = &names[..] else {
         return;
     };
-    let at = |factor: f64| expression.value(&|name: &String| factor * values[name]);
-    let proportional = [0.5, 3.0].iter().all(|factor| {
-        let (found, expected) = (at(*factor), factor * at(1.0));
-        (found - expected).abs() <= 1e-12 * expected.abs()
-    });
-    if others.iter().any(|other| other != name) || !proportional || values[*name] == 0.0 {
+    // At values of its size, also if it is zero in the file.
+    let size = values[*name].abs().max(1.0);
+    let at = |x: f64| expression.value(&|_: &String| x * size) / (x * size);
+    let ratio = at(1.0);
+    let proportional = [0.6, 1.7]
+        .iter()
+        .all(|x| (at(*x) - ratio).abs() <= 1e-12 * ratio.abs());
+    if others.iter().any(|other| other != name) || !proportional || !ratio.is_normal() {
         return;
     }
     let path = of_parameter(name);
@@ -280,6 +290,23 @@ fn share_unit(
     for variable in own.filter(|own| own.unit.is_empty()) {
         unit.clone_into(&mut variable.unit);
     }
+}
+
+/// Where a number stands by now: at its pointer, or, if it is the one value of a varied thickness or section, in
+/// each of the values that it stands for.
+fn entries(document: &Value, pointer: &str) -> Vec<String> {
+    if document.pointer(pointer).is_some() {
+        return vec![pointer.to_owned()];
+    }
+    let Some((property, below)) = pointer.rsplit_once("/value") else {
+        return Vec::new();
+    };
+    let values = document.pointer(&join(property, "values"));
+    let count = values.and_then(Value::as_array).map_or(0, Vec::len);
+    let entry = |k: usize| format!("{property}/values/{k}{below}");
+    let all = (0..count).map(entry);
+    all.filter(|entry| document.pointer(entry).is_some())
+        .collect()
 }
 
 /// Faults of the names of parameters.

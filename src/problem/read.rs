@@ -47,6 +47,9 @@ const TOLERANCE_OF_FLEXIBLE: f64 = 1e-6;
 /// That with finite elements of all nodes, whose fast vibrations would set the steps. Positions are then accurate to about 1e-9.
 const TOLERANCE_OF_ELEMENTS: f64 = 1e-5;
 
+/// The unit of the value of an event in the schema.
+const OF_QUANTITY: &str = "that of the quantity";
+
 /// Name of the objective if the nearest feasible design is sought.
 const NEAREST: &str = "squared distance from the start";
 
@@ -172,12 +175,8 @@ pub(super) fn parse(written: &str, file: &str, overrides: &[Override]) -> Result
             }
             let scene = problem.unlowered_scene(&problem.start());
             if let Some(until) = &scene.until {
-                let value = |variable: &&mut Variable| {
-                    variable
-                        .paths
-                        .iter()
-                        .any(|path| path == "/simulation/until/reaches")
-                };
+                // The unit of the schema stands for that of the quantity, also where a parameter gives the number.
+                let value = |variable: &&mut Variable| variable.unit == OF_QUANTITY;
                 for variable in problem.variables.iter_mut().filter(value) {
                     variable.unit = until.measure.unit();
                 }

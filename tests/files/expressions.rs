@@ -1,8 +1,10 @@
 //! Parameters and expressions: the same scene as by numbers, exact derivatives, faults with their place.
 
 use flexbody_driver::evaluate::Evaluated;
-use flexbody_driver::{check, simulate};
+use flexbody_driver::integration::Integration;
+use flexbody_driver::{Analysed, check, simulate};
 use flexbody_problem::{Override, Problem};
+use serde_json::Value;
 
 /// Two links of a length that carries their ends, masses, places and inertia, and whatever else may follow from it.
 fn links(parameters: &str, half: &str, length: &str, start: &str) -> String {
@@ -140,11 +142,45 @@ fn structures_follow_parameters() {
     }
 }
 
+/// The one value of a thickness that varies by band stands for all of them, also as an expression.
+#[test]
+fn the_value_of_a_varied_thickness_follows_a_parameter() {
+    let varied = r#""thickness": {"per": "band", "bands": 3, "value": "= 2*t"}"#;
+    assert_eq!(PLATE.matches(r#""thickness": "= 2*t""#).count(), 1);
+    let own = problem(&PLATE.replace(r#""thickness": "= 2*t""#, varied));
+    let plain = problem(PLATE);
+    let gradients = |problem: &Problem| -> Vec<f64> {
+        let all = check(problem, &problem.start()).expect("solves");
+        all.iter()
+            .map(|derivative| {
+                let error = derivative.relative_difference();
+                assert!(error <= 1e-11, "{derivative:?}");
+                derivative.adjoint
+            })
+            .collect()
+    };
+    for (own, plain) in gradients(&own).iter().zip(gradients(&plain)) {
+        assert!(
+            (own / plain - 1.0).abs() < 1e-12 && plain != 0.0,
+            "{own} {plain}"
+        );
+    }
+}
+
 /// A variable of a parameter has the unit of the number that is proportional to it.
 #[test]
 fn a_parameter_has_the_unit_of_its_numbers() {
     let own = problem(&links(PARAMETERS, "\"= half\"", "\"= L\"", "0"));
     assert_eq!(own.variables[0].unit, "m");
+    // Also of one that is zero.
+    let text = links(PARAMETERS, "\"= half\"", "\"= L\"", "\"= turn\"");
+    let text = text
+        .replace(r#""rho": 3,"#, r#""rho": 3, "turn": 0,"#)
+        .replace(
+            r#""rho": {"path": "/parameters/rho", "lower": 1, "upper": 9}"#,
+            r#""turn": {"path": "/parameters/turn", "lower": -1, "upper": 1}"#,
+        );
+    assert_eq!(problem(&text).variables[1].unit, "rad");
     let own = problem(PLATE);
     let units: Vec<&str> = own.variables.iter().map(|own| own.unit.as_str()).collect();
     assert_eq!(units, ["m", "Pa"]);
@@ -290,4 +326,90 @@ fn texts_are_no_expressions() {
         1,
     );
     assert_eq!(problem(&text).name, "links");
+}
+
+/// The document with every number of a variable given by a parameter, and the variable of the parameter.
+fn by_parameters(document: &Value) -> Value {
+    let mut other = document.clone();
+    let variables = document["variables"].as_object().expect("variables");
+    other["parameters"] = serde_json::json!({});
+    for (k, (name, variable)) in variables.iter().enumerate() {
+        let one = variable["path"].as_str().into_iter();
+        let several = variable["paths"].as_array().into_iter().flatten();
+        let paths: Vec<&str> = one.chain(several.filter_map(Value::as_str)).collect();
+        let parameter = format!("p{k}");
+        other["parameters"][&parameter] = document.pointer(paths[0]).expect("a number").clone();
+        for path in paths {
+            *other.pointer_mut(path).expect("a number") =
+                serde_json::json!(format!("= {parameter}"));
+        }
+        let own = &mut other["variables"][name];
+        own["path"] = serde_json::json!(format!("/parameters/{parameter}"));
+        own.as_object_mut().expect("an object").remove("paths");
+    }
+    other
+}
+
+/// Shipped problems whose variables move parameters instead of numbers: the same values, gradients and units.
+#[test]
+fn shipped_problems_are_the_same_by_parameters() {
+    for name in [
+        "trebuchet",
+        "trebuchet_release_angle",
+        "triple_pendulum",
+        "plate_patches",
+        "scordelis_lo",
+        "extreme/damped_oscillator",
+        "extreme/spring_pendulum",
+        "extreme/turning_bar",
+        "extreme/flexible_pendulum",
+        "extreme/door",
+        "extreme/open_joint",
+    ] {
+        let path = format!("{}/problems/{name}.json", env!("CARGO_MANIFEST_DIR"));
+        let text = std::fs::read_to_string(path).expect("a problem");
+        let document: Value = serde_json::from_str(&text).expect("JSON");
+        let own = problem(&by_parameters(&document).to_string());
+        let plain = problem(&text);
+        let found = |problem: &Problem| {
+            let which: Vec<usize> = (0..problem.function_names.len()).collect();
+            let mut integration = Integration::of(problem, Some(&which), true);
+            let x = problem.start();
+            let at = Analysed::with(&mut integration, problem, &x, &which)
+                .expect("runs")
+                .0;
+            let gradients = at.gradients(problem, &which).expect("differentiates").0;
+            (
+                at.finite_values(problem, &which).expect("finite"),
+                gradients,
+            )
+        };
+        let ((values, gradients), (expected, exact)) = (found(&own), found(&plain));
+        assert_eq!(values, expected, "{name}");
+        // The one variable of a varied thickness stands for several when it is no parameter.
+        let same = own.variables.len() == plain.variables.len();
+        for (row, exact) in gradients.iter().zip(&exact) {
+            let sum = |row: &[f64]| -> f64 { row.iter().sum() };
+            let pairs: Vec<(f64, f64)> = match same {
+                true => row.iter().copied().zip(exact.iter().copied()).collect(),
+                false => vec![(sum(row), sum(exact))],
+            };
+            for (own, exact) in pairs {
+                assert!(
+                    (own - exact).abs() <= 1e-11 * exact.abs(),
+                    "{name}: {own} {exact}"
+                );
+            }
+        }
+        if same {
+            let units = |problem: &Problem| -> Vec<String> {
+                problem
+                    .variables
+                    .iter()
+                    .map(|own| own.unit.clone())
+                    .collect()
+            };
+            assert_eq!(units(&own), units(&plain), "{name}");
+        }
+    }
 }
