@@ -343,6 +343,11 @@ impl Derived {
         self.list.len()
     }
 
+    /// Pointers to the derived numbers of the document.
+    pub fn pointers(&self) -> impl Iterator<Item = &String> {
+        self.list.iter().map(|(pointer, _)| pointer)
+    }
+
     /// The design `x` with what follows from it.
     pub fn extend<'x, S: Scalar>(&self, x: &'x [S]) -> Cow<'x, [S]> {
         if self.list.is_empty() || x.len() != self.variables {

@@ -311,6 +311,13 @@ impl Problem {
         })
     }
 
+    /// Whether a design moves the nodes of structures.
+    pub fn moves_meshes(&self) -> bool {
+        let own = self.variables.iter().flat_map(|own| &own.paths);
+        let mut all = own.chain(self.derived.pointers());
+        all.any(|path| path.contains("/mesh/"))
+    }
+
     /// Derivatives of the numbers of structures, except thickness and sections, in the design.
     pub fn moved(&self, statics: &Statics, x: &[f64]) -> Moved {
         let moves = |variable: &Variable| {

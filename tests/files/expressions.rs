@@ -2,7 +2,7 @@
 
 use flexbody_driver::evaluate::Evaluated;
 use flexbody_driver::integration::Integration;
-use flexbody_driver::{Analysed, check, simulate};
+use flexbody_driver::{Analysed, Simulated, check, simulate};
 use flexbody_problem::{Override, Problem};
 use serde_json::Value;
 
@@ -165,6 +165,21 @@ fn the_value_of_a_varied_thickness_follows_a_parameter() {
             "{own} {plain}"
         );
     }
+}
+
+/// A mesh that a parameter turns inside out is a failed design, as one by a variable of its own.
+#[test]
+fn a_mesh_that_a_parameter_spoils_is_a_failed_design() {
+    let panel = r#"{"curved_panel": {"radius": 1, "length": 1, "angles": ["= open", 1.5], "elements": [3, 3]}}"#;
+    let mesh = r#"{"plate": {"length": "= width", "width": 1, "elements": [3, 3]}}"#;
+    assert_eq!(PLATE.matches(mesh).count(), 1);
+    let text = PLATE
+        .replace(mesh, panel)
+        .replace(r#""side": 0.6}"#, r#""side": 0.6, "open": "= side + 0.1"}"#);
+    let own = problem(&text.replace(r#""upper": 1}}"#, r#""upper": 2}}"#));
+    assert!(Simulated::of(&own, &[0.01, 0.6]).is_ok());
+    let failure = Simulated::of(&own, &[0.01, 1.4]).err().expect("fails");
+    assert!(failure.to_string().contains("mesh"), "{failure}");
 }
 
 /// A variable of a parameter has the unit of the number that is proportional to it.

@@ -169,8 +169,7 @@ impl StaticDesign {
             return Err(StaticsFailure::Undefined { what });
         }
         let scene: StaticScene<f64> = problem.static_scene(statics, x);
-        let moves = |path: &String| path.contains("/mesh/");
-        if problem.variables.iter().any(|v| v.paths.iter().any(moves))
+        if problem.moves_meshes()
             && let Some(fault) = faults(statics.mesh(), &scene.structure.nodes)
                 .into_iter()
                 .next()
