@@ -3575,7 +3575,7 @@ class MachineKeys(Document):
         ----------
         name : text
             Its name among the `parameters`.
-        loads : number
+        loads : number [that of the numbers it gives]
         """
         return Name(name, self._add("parameters", "parameter", name, loads))
 

@@ -31,6 +31,9 @@ use statics::{CaseLoad, Statics};
 use std::sync::OnceLock;
 use structures::{Material, Structure};
 
+/// The unit of parameters in the schema.
+pub const OF_PARAMETERS: &str = "that of the numbers it gives";
+
 /// Version of the format.
 pub const VERSION: u64 = 1;
 
@@ -79,6 +82,7 @@ pub struct Document {
     /// parentheses, pi, deg (a degree in radians), sin, cos, tan, asin, acos, atan, atan2, sqrt, exp, log, and these
     /// names. A parameter may be an expression of others, and a design variable.
     #[serde(default)]
+    #[schemars(extend("unit" = OF_PARAMETERS))]
     pub parameters: IndexMap<String, Quantity>,
     /// Bodies by name.
     #[serde(default)]

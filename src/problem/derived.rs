@@ -13,6 +13,7 @@ use super::structure::Structure;
 use super::variables::Variable;
 use crate::math::{Dual, Scalar};
 use crate::quantity::Quantity;
+use crate::schema::OF_PARAMETERS;
 use indexmap::IndexMap;
 use serde_json::{Map, Number, Value};
 use std::borrow::Cow;
@@ -223,7 +224,7 @@ impl Expressions {
                 findings.push(finding.hint(Some(why.to_owned())));
                 continue;
             }
-            if let Some(number) = number.filter(|own| !own.unit.is_empty()) {
+            if let Some(number) = number.filter(|own| own.unit != OF_PARAMETERS) {
                 share_unit(expression, (&number.unit, &values), variables);
             }
             let place = derived.variables + derived.list.len();
@@ -255,6 +256,10 @@ impl Expressions {
             }
         }
         findings.extend(derived.beyond_limits(variables, structure));
+        // What is not known is not told.
+        for variable in variables.iter_mut().filter(|own| own.unit == OF_PARAMETERS) {
+            variable.unit.clear();
+        }
         match findings.is_empty() {
             true => Ok(derived),
             false => Err(findings),
@@ -287,7 +292,7 @@ fn share_unit(
     let own = variables
         .iter_mut()
         .filter(|own| own.paths == [path.clone()]);
-    for variable in own.filter(|own| own.unit.is_empty()) {
+    for variable in own.filter(|own| own.unit == OF_PARAMETERS) {
         unit.clone_into(&mut variable.unit);
     }
 }
