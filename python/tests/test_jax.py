@@ -3,21 +3,19 @@
 from __future__ import annotations
 
 from collections.abc import Iterator
-from pathlib import Path
 from typing import Any
 
 import numpy as np
 import pytest
 
 import flexbody
+from scenes import PROBLEMS
 from scenes import PENDULUM
 
 jax = pytest.importorskip("jax")
 jnp = pytest.importorskip("jax.numpy")
 
 from flexbody.jax import function, histories  # noqa: E402
-
-PROBLEMS = Path(__file__).parents[2] / "problems"
 
 
 @pytest.fixture(autouse=True)

@@ -13,13 +13,13 @@ import numpy as np
 import pytest
 
 import flexbody
+from scenes import PROBLEMS
 from scenes import PENDULUM
 
 om = pytest.importorskip("openmdao.api")
 
 from flexbody.openmdao import FlexbodyComp, FlexbodyDriver, unit  # noqa: E402
 
-PROBLEMS = Path(__file__).parents[2] / "problems"
 OPTIMUM = 849.8985
 
 

@@ -12,8 +12,8 @@ import numpy as np
 import pytest
 
 import flexbody
+from scenes import PROBLEMS
 
-PROBLEMS = Path(__file__).parents[2] / "problems"
 OPTIMUM = 849.8985
 
 

@@ -2,16 +2,15 @@
 
 from __future__ import annotations
 
-from pathlib import Path
 from typing import Any
 
 import numpy as np
 import pytest
 
 import flexbody
+from scenes import PROBLEMS
 from flexbody.scipy import Scaled, scipy_problem
 
-PROBLEMS = Path(__file__).parents[2] / "problems"
 OPTIMUM = 849.8985
 
 

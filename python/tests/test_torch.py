@@ -11,13 +11,12 @@ import numpy as np
 import pytest
 
 import flexbody
+from scenes import PROBLEMS
 from scenes import PENDULUM
 
 torch = pytest.importorskip("torch")
 
 from flexbody.torch import function, histories  # noqa: E402
-
-PROBLEMS = Path(__file__).parents[2] / "problems"
 
 
 @pytest.fixture(scope="module")

@@ -73,7 +73,7 @@ pub(crate) fn several(
     if !quiet {
         print(&table_of_optima((&runs, starts.len()), &optima))?;
     }
-    let found = found_optima(problem, &runs);
+    let found = found_optima(&runs, &optima);
     match multi_start::best(&runs) {
         Some(best) => {
             let run = runs.swap_remove(best);

@@ -109,19 +109,12 @@ impl Simulation {
 
     /// Largest |E(t) − E(0)| of the total energy \[J\].
     pub fn energy_drift(&self) -> f64 {
-        let total = |o: &Observation| o.kinetic + o.potential;
-        let start = total(&self.observations[0]);
-        self.observations
-            .iter()
-            .fold(0.0, |m, o| m.max((total(o) - start).abs()))
+        energy_drift(&self.observations)
     }
 
     /// Largest position and velocity constraint violations.
     pub fn constraint_drift(&self) -> (f64, f64) {
-        let all = self.observations.iter();
-        all.fold((0.0, 0.0), |(p, v), o| {
-            (p.max(o.position_drift), v.max(o.velocity_drift))
-        })
+        constraint_drift(&self.observations)
     }
 
     /// Advice on the number of its steps, if elastic bodies vibrate in many.
@@ -146,4 +139,19 @@ impl Simulation {
         };
         instants.map(at).collect()
     }
+}
+
+/// Largest |E(t) − E(0)| of the total energy \[J\].
+pub fn energy_drift(observations: &[Observation]) -> f64 {
+    let total = |o: &Observation| o.kinetic + o.potential;
+    let start = total(&observations[0]);
+    let changes = observations.iter().map(|o| (total(o) - start).abs());
+    changes.fold(0.0, f64::max)
+}
+
+/// Largest position and velocity constraint violations.
+pub fn constraint_drift(observations: &[Observation]) -> (f64, f64) {
+    observations.iter().fold((0.0, 0.0), |(p, v), o| {
+        (p.max(o.position_drift), v.max(o.velocity_drift))
+    })
 }

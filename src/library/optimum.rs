@@ -3,6 +3,7 @@
 use super::logs::{Logs, Start, without_run};
 use super::written::{PageError, draw_optimisation, write, write_page};
 use crate::driver::ends::Ends;
+use crate::driver::multi_start::{LocalOptimum, Run};
 use crate::driver::{
     self, KnownEvaluations, Optimisation, Simulated, WarmStart, certificate, multi_start,
 };
@@ -37,6 +38,20 @@ pub struct Iteration {
     pub design: Vec<f64>,
     /// Values of the constraints.
     pub constraints: Vec<f64>,
+}
+
+impl Iteration {
+    fn of(row: &HistoryRow) -> Self {
+        Self {
+            number: row.iteration,
+            evaluations: row.evaluations,
+            objective: row.objective,
+            infeasibility: row.infeasibility,
+            optimality: row.optimality,
+            design: row.design.clone(),
+            constraints: row.constraints.clone(),
+        }
+    }
 }
 
 /// How a problem is optimised.
@@ -97,15 +112,7 @@ fn report(
     let Some(row) = history.rows.last() else {
         return ControlFlow::Continue(());
     };
-    progress(Iteration {
-        number: row.iteration,
-        evaluations: row.evaluations,
-        objective: row.objective,
-        infeasibility: row.infeasibility,
-        optimality: row.optimality,
-        design: row.design.clone(),
-        constraints: row.constraints.clone(),
-    })
+    progress(Iteration::of(row))
 }
 
 /// As [`optimise`], from one start or several, with logs. `stopped` is asked at every iteration whether the
@@ -224,7 +231,7 @@ fn from_several(
     let has_failed = || fault.lock().is_ok_and(|error| error.is_some());
     let ended = || stopped() || has_failed();
     let mut runs = driver::multi_start(problem, starts, &ended, &open);
-    let optima = found_optima(problem, &runs);
+    let optima = found_optima(&runs, &multi_start::distinct(problem, &runs));
     let best = multi_start::best(&runs).map(|best| runs.swap_remove(best));
     drop(runs);
     if let Ok(Some(error)) = fault.into_inner() {
@@ -241,9 +248,8 @@ fn from_several(
     })
 }
 
-/// The distinct optima of several runs, best first.
-pub(crate) fn found_optima(problem: &Problem, runs: &[multi_start::Run]) -> Vec<FoundOptimum> {
-    let optima = multi_start::distinct(problem, runs);
+/// The distinct optima of several runs, for their table.
+pub(crate) fn found_optima(runs: &[Run], optima: &[LocalOptimum]) -> Vec<FoundOptimum> {
     let found = optima.iter().map(|optimum| {
         let run = &runs[optimum.run];
         FoundOptimum {
@@ -295,16 +301,7 @@ impl Optimum {
 
     /// The iterations.
     pub fn history(&self) -> impl Iterator<Item = Iteration> + '_ {
-        let iteration = |row: &HistoryRow| Iteration {
-            number: row.iteration,
-            evaluations: row.evaluations,
-            objective: row.objective,
-            infeasibility: row.infeasibility,
-            optimality: row.optimality,
-            design: row.design.clone(),
-            constraints: row.constraints.clone(),
-        };
-        self.done.history.rows.iter().map(iteration)
+        self.done.history.rows.iter().map(Iteration::of)
     }
 
     /// The distinct optima of several starts, best first: number of the start, number of starts that found it,

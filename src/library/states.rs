@@ -1,6 +1,7 @@
 //! The motion of all bodies as the problem file has them: states, energies, reactions, stresses.
 
 use super::response::{Motion, ROUND_OFF, Whole};
+use crate::driver::simulate::{constraint_drift, energy_drift};
 use crate::figures::elastic_figures::stresses;
 use crate::functions::histories::Readings;
 use crate::functions::snapshot::Snapshot;
@@ -248,19 +249,12 @@ impl Motion {
 
     /// Largest |E(t) − E(0)| of kinetic and potential energy \[J\].
     pub fn energy_drift(&self) -> f64 {
-        let total = |o: &Observation| o.kinetic + o.potential;
-        let seen = self.observations();
-        let start = total(&seen[0]);
-        let changes = seen.iter().map(|o| (total(o) - start).abs());
-        changes.fold(0.0, f64::max)
+        energy_drift(self.observations())
     }
 
     /// Largest violation of a position constraint \[m or 1\] and of a velocity constraint \[m/s or
     /// rad/s\].
     pub fn constraint_drift(&self) -> (f64, f64) {
-        let seen = self.observations().iter();
-        seen.fold((0.0, 0.0), |(p, v), o| {
-            (p.max(o.position_drift), v.max(o.velocity_drift))
-        })
+        constraint_drift(self.observations())
     }
 }

@@ -118,14 +118,13 @@ impl Expressions {
             }
         }
         // Parameters first: each after those that it names.
-        let mut waiting = parsed;
+        let is_of_parameter = |pointer: &String| parameter_at(pointer).is_some();
+        let (mut waiting, others): (IndexMap<_, _>, IndexMap<_, _>) =
+            (parsed.into_iter()).partition(|(pointer, _)| is_of_parameter(pointer));
         loop {
-            let ready = waiting.iter().position(|(pointer, expression)| {
-                parameter_at(pointer).is_some()
-                    && expression
-                        .names()
-                        .iter()
-                        .all(|name| known.contains_key(*name))
+            let ready = waiting.values().position(|expression| {
+                let names = expression.names();
+                names.iter().all(|name| known.contains_key(*name))
             });
             let Some(next) = ready else { break };
             if let Some((pointer, expression)) = waiting.shift_remove_index(next) {
@@ -135,16 +134,14 @@ impl Expressions {
             }
         }
         for (pointer, expression) in waiting {
-            if parameter_at(&pointer).is_some() {
-                let names: Vec<&String> = expression.names();
-                let open = names.iter().find(|name| !known.contains_key(**name));
-                // A parameter that is wrong has its fault already.
-                let open = open.map_or("", |name| name.as_str());
-                let found = format!("a circle through \"{open}\"");
-                let expected = "parameters that do not depend on themselves";
-                findings.push(Finding::new(pointer, found, expected));
-                continue;
-            }
+            let names = expression.names();
+            let open = names.iter().find(|name| !known.contains_key(**name));
+            let open = open.map_or("", |name| name.as_str());
+            let found = format!("a circle through \"{open}\"");
+            let expected = "parameters that do not depend on themselves";
+            findings.push(Finding::new(pointer, found, expected));
+        }
+        for (pointer, expression) in others {
             // The circle of a parameter, or its wrong kind, is a fault already.
             if !(expression.names().iter()).all(|name| known.contains_key(*name)) {
                 continue;

@@ -170,16 +170,21 @@ impl<N> Expression<N> {
                     Operator::Minus => a - b,
                     Operator::Times => a * b,
                     Operator::Over => a / b,
-                    Operator::Power => match pair[1] {
-                        Self::Number(b) => power(a, b),
-                        Self::Minus(ref inner) => match **inner {
-                            Self::Number(b) => power(a, -b),
-                            _ => (a.ln() * b).exp(),
-                        },
-                        _ => (a.ln() * b).exp(),
+                    Operator::Power => match pair[1].constant() {
+                        Some(b) => power(a, b),
+                        None => (a.ln() * b).exp(),
                     },
                 }
             }
+        }
+    }
+
+    /// Its value, if it is a number with or without a sign.
+    fn constant(&self) -> Option<f64> {
+        match self {
+            Self::Number(number) => Some(*number),
+            Self::Minus(inner) => inner.constant().map(|number| -number),
+            _ => None,
         }
     }
 }
