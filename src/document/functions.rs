@@ -1,5 +1,6 @@
 //! Functions of interest in a file.
 
+use super::combined::{Absolute, Distance, PowerOf, Relative};
 use super::measured::{
     AngularMomentum, Bound, JointReaction, JointSlide, LargestFibreStress, LargestSectionForce,
     OfSpring, SectionComponent, SectionPlace,
@@ -9,6 +10,7 @@ use super::statics::{
     CentreOfMass, Displacement, Frequency, LowestFrequency, MomentOfInertia, OfCase,
     ReactionMoment, StaticReaction, Stress,
 };
+use super::windows::{During, MeanAbsolute, Over, ValueAt};
 use crate::quantity::{Quantity, Vector};
 use schemars::JsonSchema;
 use serde::Deserialize;
@@ -21,10 +23,18 @@ pub enum Function {
     Ks(Ks),
     /// Induced exponential, a smooth mean near the maximum over the run.
     InducedExponential(Aggregate),
-    /// Integral over the run.
-    Integral(Instant),
-    /// Value at the end of the run.
-    Final(Instant),
+    /// Integral over the run, or over a window of time.
+    Integral(Over),
+    /// Value at the end of the run, or of a window of time.
+    Final(Over),
+    /// Mean over the run, or over a window of time.
+    Mean(Over),
+    /// Mean of the square over the run, or over a window of time.
+    MeanSquare(Over),
+    /// Smooth mean of the absolute value over the run, or over a window of time.
+    MeanAbsolute(MeanAbsolute),
+    /// Value at a time, or where a quantity first reaches a value.
+    Value(ValueAt),
     /// Height of a flight path above the top of a barrier \[m\].
     Clearance(Clearance),
     /// Duration of the run; with `until`, the time of the event \[s\].
@@ -57,8 +67,12 @@ pub enum Function {
 pub enum OfMotion<'a> {
     Ks(&'a Ks),
     InducedExponential(&'a Aggregate),
-    Integral(&'a Instant),
-    Final(&'a Instant),
+    Integral(&'a Over),
+    Final(&'a Over),
+    Mean(&'a Over),
+    MeanSquare(&'a Over),
+    MeanAbsolute(&'a MeanAbsolute),
+    Value(&'a ValueAt),
     Clearance(&'a Clearance),
     Duration,
     Mass,
@@ -80,6 +94,10 @@ impl Function {
             Self::InducedExponential(own) => Some(OfMotion::InducedExponential(own)),
             Self::Integral(own) => Some(OfMotion::Integral(own)),
             Self::Final(own) => Some(OfMotion::Final(own)),
+            Self::Mean(own) => Some(OfMotion::Mean(own)),
+            Self::MeanSquare(own) => Some(OfMotion::MeanSquare(own)),
+            Self::MeanAbsolute(own) => Some(OfMotion::MeanAbsolute(own)),
+            Self::Value(own) => Some(OfMotion::Value(own)),
             Self::Clearance(own) => Some(OfMotion::Clearance(own)),
             Self::Duration => Some(OfMotion::Duration),
             Self::Mass => Some(OfMotion::Mass),
@@ -113,6 +131,8 @@ pub struct Ks {
     pub bound: Option<Bound>,
     /// The quantity.
     pub of: Instant,
+    /// The window of time, default the whole run.
+    pub during: Option<During>,
 }
 
 /// Aggregated quantity and sharpness.
@@ -128,6 +148,8 @@ pub struct Aggregate {
     pub rho: f64,
     /// The quantity.
     pub of: Instant,
+    /// The window of time, default the whole run.
+    pub during: Option<During>,
 }
 
 /// A quantity at an instant.
@@ -152,6 +174,36 @@ pub enum Instant {
     AngularMomentum(AngularMomentum),
     /// Energy of the whole scene \[J\].
     Energy(Energy),
+    /// Component of the rate of change of a point's acceleration [m/s³].
+    Jerk(Component),
+    /// Component of a point's acceleration in the axes of its body [m/s²], as a sensor on it measures but for gravity.
+    SensorAcceleration(Component),
+    /// Component of a point's position as seen from another body \[m\].
+    RelativePosition(Relative),
+    /// Component of a point's velocity as seen from another body [m/s].
+    RelativeVelocity(Relative),
+    /// Distance of points of two bodies \[m\].
+    Distance(Distance),
+    /// Power of a load or drive \[W\]; its integral is the work.
+    Power(PowerOf),
+    /// Rate of the angle of a joint [rad/s].
+    AngleRate(JointAngle),
+    /// Rate of the displacement of a joint along its axis [m/s].
+    SlideRate(JointSlide),
+    /// Sum of quantities of one unit.
+    Sum(#[schemars(length(min = 2))] Vec<Instant>),
+    /// The first quantity minus the second, of one unit.
+    Difference([Box<Instant>; 2]),
+    /// Product of quantities.
+    Product(#[schemars(length(min = 2))] Vec<Instant>),
+    /// The first quantity by the second.
+    Quotient([Box<Instant>; 2]),
+    /// Square of a quantity.
+    Square(Box<Instant>),
+    /// Absolute value of a quantity, smooth at zero.
+    Absolute(Absolute),
+    /// Rate of change of a quantity in time, by polynomials between the samples.
+    Rate(Box<Instant>),
     /// Rotation of a body about an axis \[rad\], counted over whole turns.
     Rotation(Rotation),
     /// Angle of a joint \[rad\] as in drives and torsion springs, counted over whole turns.

@@ -1,5 +1,6 @@
 //! The document of a problem file: serde structures. Their documentation becomes the JSON Schema.
 
+pub mod combined;
 pub mod drives;
 pub mod elements;
 pub mod flexible;
@@ -16,6 +17,7 @@ pub mod section;
 pub mod standard_input;
 pub mod statics;
 pub mod structures;
+pub mod windows;
 
 use drives::Drive;
 use flexbody_mechanics::system::equilibrium::KnownStarts;

@@ -384,18 +384,19 @@ impl Simulated {
                 let function = &end.at.scene.functions[f];
                 let found = end.at.function(f);
                 let maximum = found.maximum?;
-                let Function::Reduced { instant, reduction } = function else {
+                let Function::Reduced { of, reduction, .. } = function else {
                     return None;
                 };
+                let instant = of.instant();
                 let above = match reduction {
                     Reduction::Ks {
                         bound: Bound::Above,
                         ..
-                    } if !matches!(instant, Instant::LargestDeformation { .. }) => true,
+                    } if !matches!(instant, Some(Instant::LargestDeformation { .. })) => true,
                     // Sums over points lie above their maximum, means over time and points below.
                     _ if matches!(
                         instant,
-                        Instant::ShellStress { .. } | Instant::LargestDeformation { .. }
+                        Some(Instant::ShellStress { .. } | Instant::LargestDeformation { .. })
                     ) =>
                     {
                         found.value >= maximum.value

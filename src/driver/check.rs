@@ -3,13 +3,14 @@
 use super::evaluate::Evaluated;
 use super::event;
 use super::integration::Integration;
+use crate::functions::seen::SeenPart;
 use crate::functions::snapshot::Snapshot;
-use crate::functions::{Function, Instant, Reduction};
+use crate::functions::{Function, Instant, Operation, Quantity, Reduction};
 use crate::integrate::{IntegrationFailure, Settings, Trajectory, simulate};
 use crate::math::Complex64;
 use crate::math::scalar::COMPLEX_STEP;
-use crate::model::LoadKind;
 use crate::model::flexible::Quadratic;
+use crate::model::{DegreeOfFreedom, LoadKind};
 use crate::problem::Problem;
 use crate::system::loads::springs::SpringPart;
 use crate::system::measures::WrenchPart;
@@ -144,15 +145,45 @@ pub fn check(problem: &Problem, x: &[f64]) -> Result<Vec<CheckedDerivative>, Int
 /// The size of function f that determines its round-off: its value, or the size of its kind in a
 /// scene of this length L and duration T, as a value may be a difference.
 pub(super) fn own_size(at: &Evaluated, f: usize) -> f64 {
-    let model = &at.scene.model;
-    let (length, time) = (length_scale(model), at.run.duration);
-    let (instant, reduction) = match &at.scene.functions[f] {
-        Function::Reduced { instant, reduction } => (instant, *reduction),
+    let (length, time) = (length_scale(&at.scene.model), at.run.duration);
+    let (of, reduction) = match &at.scene.functions[f] {
+        Function::Reduced { of, reduction, .. } => (of, *reduction),
         Function::Clearance { .. } => return length.max(at.function(f).value.abs()),
         Function::Duration => return time,
         Function::OfDesign { value, .. } => return value.abs().max(1.0),
     };
-    let size = match instant {
+    let size = match reduction {
+        Reduction::Integral => size_of(at, of) * time,
+        Reduction::Final
+        | Reduction::Mean
+        | Reduction::Ks { .. }
+        | Reduction::InducedExponential { .. } => size_of(at, of),
+    };
+    size.max(at.function(f).value.abs())
+}
+
+/// The size of a quantity in a scene.
+fn size_of(at: &Evaluated, of: &Quantity<f64>) -> f64 {
+    match of {
+        Quantity::Of(instant) => size_of_instant(at, instant),
+        Quantity::Combined { operation, of } => {
+            let all: Vec<f64> = of.iter().map(|own| size_of(at, own)).collect();
+            match operation {
+                Operation::Sum | Operation::Difference => all.iter().fold(0.0, |a, &b| a.max(b)),
+                Operation::Product => all.iter().product(),
+                Operation::Quotient => all[0] / all[1],
+                Operation::Square => all[0] * all[0],
+                Operation::Absolute { .. } => all[0],
+                Operation::Rate => all[0] / at.run.duration,
+            }
+        }
+    }
+}
+
+fn size_of_instant(at: &Evaluated, instant: &Instant<f64>) -> f64 {
+    let model = &at.scene.model;
+    let (length, time) = (length_scale(model), at.run.duration);
+    match instant {
         Instant::Position { .. } | Instant::Range { .. } => length,
         Instant::Velocity { .. } | Instant::Speed { .. } => length / time,
         Instant::Acceleration { .. } => length / (time * time),
@@ -185,6 +216,19 @@ pub(super) fn own_size(at: &Evaluated, f: usize) -> f64 {
             sizes.fold(0.0, f64::max)
         }
         Instant::Slide(_) => length,
+        Instant::Felt { .. } => length / (time * time),
+        Instant::Seen(seen) => match seen.part {
+            SeenPart::Position | SeenPart::Distance => length,
+            SeenPart::Velocity => length / time,
+        },
+        Instant::JointRate { dof, .. } => match dof {
+            DegreeOfFreedom::Rotation => 1.0 / time,
+            DegreeOfFreedom::Translation => length / time,
+        },
+        Instant::Power(_) => {
+            let mass: f64 = model.bodies.iter().map(|body| body.mass).sum();
+            mass * (model.gravity.norm() + length / (time * time)) * length / time
+        }
         Instant::Reaction(_) | Instant::Energy(_) | Instant::StrainEnergy(_) => {
             let mass: f64 = model.bodies.iter().map(|body| body.mass).sum();
             let force = mass * (model.gravity.norm() + length / (time * time));
@@ -198,12 +242,7 @@ pub(super) fn own_size(at: &Evaluated, f: usize) -> f64 {
             (SpringPart::Torque, LoadKind::TorsionSpring { stiffness, .. }) => *stiffness,
             _ => length,
         },
-    };
-    let size = match reduction {
-        Reduction::Integral => size * time,
-        Reduction::Final | Reduction::Ks { .. } | Reduction::InducedExponential { .. } => size,
-    };
-    size.max(at.function(f).value.abs())
+    }
 }
 
 /// The largest of each elastic coordinate in the motion, or of each of these unknowns of nodes.

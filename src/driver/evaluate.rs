@@ -148,8 +148,7 @@ impl Evaluated {
     /// Why the history of function f has no derivative by the design here, if so.
     pub fn no_derivative_of_history(&self, problem: &Problem, f: usize) -> Option<String> {
         let instant = self.scene.functions[f].instant()?.clone();
-        let reduction = Reduction::Integral;
-        let over_all = Function::Reduced { instant, reduction };
+        let over_all = Function::reduced(instant, Reduction::Integral);
         self.vanishing(problem, (f, &over_all), ZERO)
     }
 

@@ -474,9 +474,11 @@ fn passes_kinks(settings: &Settings, run: &Trajectory<f64>) -> bool {
 /// Whether a function depends on more than the state at the end.
 pub(super) fn looks_at_the_whole(function: &Function<f64>) -> bool {
     match function {
-        Function::Reduced { instant, reduction } => {
-            !matches!(reduction, Reduction::Final) || instant.watched_rotation().is_some()
-        }
+        Function::Reduced {
+            of,
+            during,
+            reduction,
+        } => !matches!(reduction, Reduction::Final) || during.is_some() || of.looks_around(),
         Function::Duration | Function::OfDesign { .. } => false,
         Function::Clearance { release, .. } => {
             matches!(release, crate::functions::Release::Best { .. })

@@ -1,8 +1,6 @@
 //! Origin of a number that is not finite.
 
 use super::evaluate::Evaluated;
-use crate::functions::evaluate::sample;
-use crate::functions::turning::turns;
 use crate::functions::{Function, Instant};
 use crate::problem::Problem;
 
@@ -10,15 +8,22 @@ use crate::problem::Problem;
 pub fn value(problem: &Problem, at: &Evaluated, f: usize, value: f64) -> String {
     let name = &problem.function_names[f];
     let own = match &at.scene.functions[f] {
-        Function::Reduced { instant, .. } => {
-            let turns = turns(instant.watched_rotation(), &at.run);
-            let all = sample(instant, &turns, &at.scene.model, &at.run);
+        Function::Reduced { of, during, .. } => {
+            let (model, run) = (&at.scene.model, &at.run);
+            let all = of.sample(model, run);
             let first = all.iter().position(|x| !x.is_finite());
-            first.map(|k| {
-                let (what, time) = (instant.describe(), at.run.time(k));
-                let why = shared(at, instant);
+            let not_inside = || {
+                let window = during.as_ref()?;
+                let outside = window.times(model, run).is_none();
+                outside.then(|| format!(": {}", window.missed(model, run)))
+            };
+            let unlike = |k: usize| {
+                let (what, time) = (of.describe(), run.time(k));
+                let instants = at.scene.functions[f].instants();
+                let why: String = instants.iter().map(|own| shared(at, own)).collect();
                 format!(": its {what} is not finite from t = {time:.6e} s on{why}")
-            })
+            };
+            first.map(unlike).or_else(not_inside)
         }
         Function::Clearance { .. } | Function::Duration | Function::OfDesign { .. } => None,
     };

@@ -5,7 +5,7 @@ use super::shells;
 use crate::driver::Simulation;
 use crate::functions::instant::DeformationKind;
 use crate::functions::snapshot::Snapshot;
-use crate::functions::{Function, Instant, Reduction};
+use crate::functions::{Function, Instant, Quantity, Reduction};
 use crate::integrate::Trajectory;
 use crate::math::Vec3;
 use crate::model::Model;
@@ -246,8 +246,9 @@ pub fn limits(problem: &Problem, simulation: &Simulation) -> Vec<Limit> {
     let model = &scene.model;
     let limit = |function: &Function<f64>, upper: f64| {
         let Function::Reduced {
-            instant,
+            of: Quantity::Of(instant),
             reduction: Reduction::Ks { .. },
+            ..
         } = function
         else {
             return None;

@@ -1,10 +1,9 @@
 //! The release of a projectile and its flight.
 
 use crate::driver::Simulation;
-use crate::functions::evaluate::sample;
+use crate::functions::samples::sample;
 use crate::functions::snapshot::Snapshot;
-use crate::functions::turning::turns;
-use crate::functions::{Function, Instant, Reduction};
+use crate::functions::{Function, Instant, Quantity, Reduction};
 use crate::plots::Flight;
 use crate::problem::{Drawing, Trace};
 
@@ -32,17 +31,18 @@ pub(super) fn release(
     }
     let which = objective.map_or(0..functions.len(), |f| f..f + 1);
     let (sample, thrown) = functions[which].iter().find_map(|function| {
-        let Function::Reduced { instant, reduction } = function else {
-            return None;
-        };
-        let Instant::Range { projectile, .. } = instant else {
+        let Function::Reduced {
+            of: Quantity::Of(instant @ Instant::Range { projectile, .. }),
+            during: None,
+            reduction,
+        } = function
+        else {
             return None;
         };
         if *reduction == Reduction::Final {
             return Some((run.last(), *projectile));
         }
-        let turns = turns(instant.watched_rotation(), run);
-        let values = sample(instant, &turns, model, run);
+        let values = sample(instant, model, run);
         let best = (0..values.len()).reduce(|b, k| if values[k] > values[b] { k } else { b })?;
         Some((best, *projectile))
     })?;

@@ -11,10 +11,7 @@ use super::traces;
 use crate::driver::Simulation;
 use crate::driver::ends::Ends;
 use crate::driver::optimise::requested;
-use crate::functions::Function;
-use crate::functions::evaluate::sample;
 use crate::functions::snapshot::Snapshot;
-use crate::functions::turning::turns;
 use crate::math::Vec3;
 use crate::page;
 use crate::page::{Body, Chart, Curve, Link, Stage, Value, convergence, rounded};
@@ -184,23 +181,16 @@ fn curves(problem: &Problem, motions: &[Shown]) -> Vec<Chart> {
                       title, simulation, ..
                   }: &Shown| {
             let (written, run) = (&simulation.written, simulation.motion());
-            let Function::Reduced { instant, .. } = written.functions.get(f)? else {
-                return None;
-            };
-            let values = sample(
-                instant,
-                &turns(instant.watched_rotation(), run),
-                &written.model,
-                run,
-            );
+            let quantity = written.functions.get(f)?.quantity()?;
+            let values = quantity.sample(&written.model, run);
             let points = values.iter().enumerate().map(|(k, &v)| [run.time(k), v]);
-            Some((Curve::new(named(title, ""), points), instant.unit()))
+            Some((Curve::new(named(title, ""), points), quantity.unit()))
         };
-        let found: Vec<(Curve, &str)> = motions.iter().filter_map(of).collect();
-        let Some(unit) = found.first().map(|(_, unit)| *unit) else {
+        let found: Vec<(Curve, String)> = motions.iter().filter_map(of).collect();
+        let Some(unit) = found.first().map(|(_, unit)| unit.clone()) else {
             continue;
         };
-        let unit = if unit.is_empty() { "1" } else { unit };
+        let unit = if unit.is_empty() { "1" } else { &unit };
         let curves = found.into_iter().map(|(curve, _)| curve).collect();
         let name = &problem.function_names[f];
         let mut own = chart(name, &format!("at an instant [{unit}]"), curves);

@@ -3,9 +3,7 @@
 use super::NamedFile;
 use crate::driver::Simulation;
 use crate::functions::Function;
-use crate::functions::evaluate::sample;
 use crate::functions::snapshot::Snapshot;
-use crate::functions::turning::turns;
 use crate::math::Vec3;
 use crate::model::{FlexibleBody, Form};
 use crate::problem::Problem;
@@ -140,11 +138,7 @@ fn functions(problem: &Problem, simulation: &Simulation) -> String {
     let mut columns: Vec<Vec<f64>> = vec![(0..=run.last()).map(|k| run.time(k)).collect()];
     for (name, function) in all.chain(event) {
         let (what, unit, values) = match function {
-            Function::Reduced { instant, .. } => {
-                let turns = turns(instant.watched_rotation(), run);
-                let values = sample(instant, &turns, model, run);
-                (instant.describe(), instant.unit(), values)
-            }
+            Function::Reduced { of, .. } => (of.describe(), of.unit(), of.sample(model, run)),
             Function::Clearance {
                 projectile,
                 distance,
@@ -155,7 +149,11 @@ fn functions(problem: &Problem, simulation: &Simulation) -> String {
                     let flight = Snapshot::of(model, run, k).flight(projectile);
                     flight.clearance(*distance, *top)
                 };
-                ("clearance", "m", (0..=run.last()).map(at).collect())
+                (
+                    "clearance".to_owned(),
+                    "m".to_owned(),
+                    (0..=run.last()).map(at).collect(),
+                )
             }
             Function::Duration | Function::OfDesign { .. } => continue,
         };

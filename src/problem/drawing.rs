@@ -7,6 +7,7 @@ use super::elastic_drawing::{
 use super::fibres::{BeamFibres, fibres};
 use super::placement::Assembly;
 use super::statics::properties::thickness;
+use crate::functions::{Instant, Quantity};
 use crate::math::Vec3;
 use crate::model::Model;
 use crate::quantity::vector;
@@ -97,7 +98,7 @@ pub fn drawing(document: &Document, order: &[usize], x: &[f64]) -> Drawing {
     let falls = up.dot(gravity) < -0.999 * gravity.norm();
     let ground = scene.functions.iter().find_map(|function| match function {
         crate::functions::Function::Reduced {
-            instant: crate::functions::Instant::Range { projectile, .. },
+            of: Quantity::Of(Instant::Range { projectile, .. }),
             ..
         } => Some(projectile.ground),
         _ => None,

@@ -7,6 +7,7 @@
 mod beam;
 mod bounds;
 mod check;
+mod combined;
 mod derived;
 mod drawing;
 mod elastic_drawing;
@@ -46,7 +47,9 @@ mod statics;
 pub mod structure;
 mod syntax;
 mod text;
+mod units;
 mod variables;
+mod windows;
 
 use flexbody_document::{self as schema, prepared, quantity};
 use flexbody_mathematics::math;

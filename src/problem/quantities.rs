@@ -3,13 +3,15 @@
 use super::flexible::{FlexibleBodies, Sections, station, stations};
 use super::placement::{Assembly, GROUND};
 use super::starting_angles::{starting_angle, starting_turn};
+use crate::functions::seen::SeenPart;
 use crate::functions::{
-    Bound, EnergyPart, Function, Gate, GateSide, Instant, Projectile, Reduction, Release, Rotation,
+    Bound, EnergyPart, Function, Gate, GateSide, Instant, Operation, Projectile, Reduction,
+    Release, Rotation,
 };
 use crate::math::rotation::{self, compose, conjugate};
 use crate::math::scalar::{lift3, unit};
 use crate::math::{Scalar, Vec3};
-use crate::model::Axes;
+use crate::model::{Axes, DegreeOfFreedom};
 use crate::quantity::vector;
 use crate::schema::Document;
 use crate::schema::functions::{self as written, CountedFrom, Function as Written, OfMotion};
@@ -37,10 +39,6 @@ pub(super) struct FunctionBuilder<'a, S> {
 impl<S: Scalar> FunctionBuilder<'_, S> {
     /// The function that a file writes so.
     pub(super) fn function(&self, function: &Written) -> Function<S> {
-        let reduced = |instant: &written::Instant, reduction| Function::Reduced {
-            instant: self.instant(instant),
-            reduction,
-        };
         let Some(function) = function.of_motion() else {
             unreachable!("functions of structures are refused before");
         };
@@ -50,13 +48,22 @@ impl<S: Scalar> FunctionBuilder<'_, S> {
                     None | Some(Side::Below) => Bound::Below,
                     Some(Side::Above) => Bound::Above,
                 };
-                reduced(&ks.of, Reduction::Ks { rho: ks.rho, bound })
+                let reduction = Reduction::Ks { rho: ks.rho, bound };
+                self.reduced(&ks.of, ks.during.as_ref(), reduction)
             }
             OfMotion::InducedExponential(ie) => {
-                reduced(&ie.of, Reduction::InducedExponential { rho: ie.rho })
+                let reduction = Reduction::InducedExponential { rho: ie.rho };
+                self.reduced(&ie.of, ie.during.as_ref(), reduction)
             }
-            OfMotion::Integral(instant) => reduced(instant, Reduction::Integral),
-            OfMotion::Final(instant) => reduced(instant, Reduction::Final),
+            OfMotion::Integral(over) => self.over(over, Reduction::Integral),
+            OfMotion::Final(over) => self.over(over, Reduction::Final),
+            OfMotion::Mean(over) => self.over(over, Reduction::Mean),
+            OfMotion::MeanSquare(over) => self.mean_of(Operation::Square, over.of(), over.during()),
+            OfMotion::MeanAbsolute(own) => {
+                let operation = Operation::Absolute { width: own.width };
+                self.mean_of(operation, &own.of, own.during.as_ref())
+            }
+            OfMotion::Value(value) => self.value_at(value),
             OfMotion::Clearance(clearance) => self.clearance(clearance),
             OfMotion::Duration => Function::Duration,
             OfMotion::Mass => Function::OfDesign {
@@ -85,7 +92,7 @@ impl<S: Scalar> FunctionBuilder<'_, S> {
         }
     }
 
-    /// The instant quantity that a file writes so.
+    /// The quantity of an instant that a file writes so.
     pub(super) fn instant(&self, instant: &written::Instant) -> Instant<S> {
         use written::{Energy, Instant as I};
         let parts = |c: &written::Component| {
@@ -160,6 +167,28 @@ impl<S: Scalar> FunctionBuilder<'_, S> {
                     rotation.from,
                 ))
             }
+            I::SensorAcceleration(component) => {
+                let (body, point, direction) = parts(component);
+                Instant::Felt {
+                    body,
+                    point,
+                    direction,
+                }
+            }
+            I::RelativePosition(of) => self.relative(of, SeenPart::Position),
+            I::RelativeVelocity(of) => self.relative(of, SeenPart::Velocity),
+            I::Distance(of) => self.distance(of),
+            I::AngleRate(of) => self.joint_rate(&of.joint, DegreeOfFreedom::Rotation),
+            I::SlideRate(of) => self.joint_rate(&of.joint, DegreeOfFreedom::Translation),
+            I::Jerk(_)
+            | I::Power(_)
+            | I::Sum(_)
+            | I::Difference(_)
+            | I::Product(_)
+            | I::Quotient(_)
+            | I::Square(_)
+            | I::Absolute(_)
+            | I::Rate(_) => unreachable!("a combination is none of an instant"),
             I::Angle(angle) => Instant::Rotation(self.joint_angle(&angle.joint)),
             I::Range(range) => Instant::Range {
                 projectile: self.projectile(range),
@@ -203,15 +232,19 @@ impl<S: Scalar> FunctionBuilder<'_, S> {
         self.flexible.sections(self.document, of, beams, self.x)
     }
 
-    fn joint(&self, name: &str) -> usize {
+    pub(super) fn joint(&self, name: &str) -> usize {
         let index = self.document.joints.get_index_of(name);
         index.expect("a function is of a joint, which is checked")
     }
 
+    pub(super) fn load(&self, name: &str) -> usize {
+        let load = self.document.loads.get_index_of(name);
+        load.expect("a function is of a load, which is checked")
+    }
+
     fn spring(&self, of: &OfSpring, part: SpringPart) -> Instant<S> {
-        let load = self.document.loads.get_index_of(&of.load);
         Instant::Spring(Spring {
-            load: load.expect("a function is of a load, which is checked"),
+            load: self.load(&of.load),
             part,
         })
     }
@@ -241,14 +274,14 @@ impl<S: Scalar> FunctionBuilder<'_, S> {
         })
     }
 
-    fn body(&self, name: &str) -> usize {
+    pub(super) fn body(&self, name: &str) -> usize {
         self.assembly
             .index(name)
             .expect("a function is of a body, not of ground")
     }
 
     /// A point from the centre of mass \[m\]. The default is the centre of mass.
-    fn point(&self, body: &str, point: &Option<Point>) -> Vec3<S> {
+    pub(super) fn point(&self, body: &str, point: &Option<Point>) -> Vec3<S> {
         point.as_ref().map_or(Vec3::zeros(), |point| {
             self.assembly.in_body(body, point) - self.assembly.pose(body).centre
         })
@@ -364,14 +397,23 @@ pub fn released<'a>(
     document: &'a Document,
     name: &str,
 ) -> Option<(&'a written::Range, Option<f64>)> {
-    let (instant, rho) = match document.functions.get(name)?.of_motion()? {
-        OfMotion::Ks(ks) => (&ks.of, Some(ks.rho)),
-        OfMotion::InducedExponential(aggregate) => (&aggregate.of, Some(aggregate.rho)),
-        OfMotion::Final(instant) => (instant, None),
-        OfMotion::Integral(_) | OfMotion::Clearance(_) | OfMotion::Duration | OfMotion::Mass => {
-            return None;
-        }
+    let (instant, during, rho) = match document.functions.get(name)?.of_motion()? {
+        OfMotion::Ks(ks) => (&ks.of, ks.during.as_ref(), Some(ks.rho)),
+        OfMotion::InducedExponential(own) => (&own.of, own.during.as_ref(), Some(own.rho)),
+        OfMotion::Final(over) => (over.of(), over.during(), None),
+        OfMotion::Integral(_)
+        | OfMotion::Mean(_)
+        | OfMotion::MeanSquare(_)
+        | OfMotion::MeanAbsolute(_)
+        | OfMotion::Value(_)
+        | OfMotion::Clearance(_)
+        | OfMotion::Duration
+        | OfMotion::Mass => return None,
     };
+    // A release is one of the whole run.
+    if during.is_some() {
+        return None;
+    }
     match instant {
         written::Instant::Range(range) => Some((range, rho)),
         _ => None,

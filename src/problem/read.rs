@@ -23,8 +23,9 @@ use super::statics::{Asked, Statics};
 use super::structure::walk;
 use super::syntax;
 use super::text;
+use super::units::{mismatched, name_units};
 use super::variables::{bind, variables};
-use super::{Constraint, Objective, OptimiserSettings, Problem, Sense, Simulation, Variable};
+use super::{Constraint, Objective, OptimiserSettings, Problem, Sense, Simulation};
 use crate::integrate::{self, Spacing, Start};
 use crate::lower::{self, Lowering};
 use crate::math::Dual;
@@ -46,9 +47,6 @@ const TOLERANCE: f64 = 1e-9;
 const TOLERANCE_OF_FLEXIBLE: f64 = 1e-6;
 /// That with finite elements of all nodes, whose fast vibrations would set the steps. Positions are then accurate to about 1e-9.
 const TOLERANCE_OF_ELEMENTS: f64 = 1e-5;
-
-/// The unit of the value of an event in the schema.
-const OF_QUANTITY: &str = "that of the quantity";
 
 /// Name of the objective if the nearest feasible design is sought.
 const NEAREST: &str = "squared distance from the start";
@@ -174,13 +172,7 @@ pub(super) fn parse(written: &str, file: &str, overrides: &[Override]) -> Result
                 };
             }
             let scene = problem.unlowered_scene(&problem.start());
-            if let Some(until) = &scene.until {
-                // The unit of the schema stands for that of the quantity, also where a parameter gives the number.
-                let value = |variable: &&mut Variable| variable.unit == OF_QUANTITY;
-                for variable in problem.variables.iter_mut().filter(value) {
-                    variable.unit = until.measure.unit();
-                }
-            }
+            name_units(&mut problem.variables, &problem.function_names, &scene);
             let mut model = scene.model;
             leave_out(&mut problem, &mut model);
             let finding = points::moved_meshes(&problem)
@@ -194,7 +186,8 @@ pub(super) fn parse(written: &str, file: &str, overrides: &[Override]) -> Result
                 .or_else(|| points::off_interfaces(&problem))
                 .or_else(|| points::moved_places(&problem))
                 .or_else(|| driven_twice(&problem))
-                .or_else(|| unassembled(&problem));
+                .or_else(|| unassembled(&problem))
+                .or_else(|| mismatched(&problem));
             match finding {
                 Some(finding) => faults(vec![finding]),
                 None => {

@@ -79,7 +79,7 @@ pub fn with_places<S: Scalar>(
     let mut until = simulation
         .until
         .as_ref()
-        .map(|until| TerminalEvent::new(builder.instant(&until.measure), until.reaches.get(x)));
+        .map(|until| TerminalEvent::new(builder.quantity(&until.measure), until.reaches.get(x)));
     flexible.move_functions(&mut model, &mut functions, &mut until);
     let scene = Scene {
         model,

@@ -111,7 +111,10 @@ impl<'a> Walker<'a> {
         }
         if let Some(choices) = schema["anyOf"].as_array() {
             let choices = choices.iter().map(|choice| self.follow(choice));
-            return match choices.clone().find(|choice| kind_fits(value, choice)) {
+            let fits = |choice: &&Value| kind_fits(value, choice) && keys_fit(value, choice);
+            let found = choices.clone().find(fits);
+            let found = found.or_else(|| choices.clone().find(|choice| kind_fits(value, choice)));
+            return match found {
                 Some(choice) => self.value(value, choice, pointer),
                 None if is_expression(value) && choices.clone().any(is_of_number) => {
                     self.structure.expressions.push(pointer.to_owned());
@@ -364,6 +367,20 @@ fn is_expression(value: &Value) -> bool {
 /// Whether a schema is that of a number.
 fn is_of_number(schema: &Value) -> bool {
     matches!(schema["type"].as_str(), Some("number" | "integer"))
+}
+
+/// Whether an object has a key of the schema; true for other values.
+fn keys_fit(value: &Value, schema: &Value) -> bool {
+    let Some(object) = value.as_object() else {
+        return true;
+    };
+    match alternatives(schema) {
+        Some(choices) => (choices.keys.iter()).any(|(key, _)| object.contains_key(*key)),
+        None => match schema["properties"].as_object() {
+            Some(known) => object.is_empty() || object.keys().any(|key| known.contains_key(key)),
+            None => true,
+        },
+    }
 }
 
 /// Whether a value has the type of the schema.

@@ -22,7 +22,7 @@ fn scene(model: &Model<f64>, duration: f64) -> Scene<f64> {
         kind: DeformationKind::Moment,
         form,
     };
-    let reduced = |instant, reduction| Function::Reduced { instant, reduction };
+    let reduced = Function::reduced;
     let mut functions = functions(tip.expect("has an interface"), 1);
     functions.push(reduced(Instant::StrainEnergy(0), Reduction::Integral));
     functions.push(reduced(deformation.clone(), Reduction::Final));

@@ -215,13 +215,13 @@ fn planes_are_found() {
                     model: model.clone(),
                     duration: 0.3,
                     until: None,
-                    functions: vec![Function::Reduced {
-                        instant: Instant::SpeedSquared {
+                    functions: vec![Function::reduced(
+                        Instant::SpeedSquared {
                             body: tip.expect("has an interface"),
                             point: Vec3::new(0.1, 0.2, 0.0),
                         },
-                        reduction: Reduction::Integral,
-                    }],
+                        Reduction::Integral,
+                    )],
                     unstarted: None,
                 };
                 let found = gradients(&scene, &run, &[0]).expect("differentiates");

@@ -15,8 +15,9 @@ fn scene(model: &Model<f64>, duration: f64) -> Scene<f64> {
     let last = model.bodies.len() - 1;
     let all = functions(last, last.saturating_sub(1)).into_iter();
     let integrals = all.filter_map(|function| match function {
-        Function::Reduced { instant, .. } => Some(Function::Reduced {
-            instant,
+        Function::Reduced { of, .. } => Some(Function::Reduced {
+            of,
+            during: None,
             reduction: Reduction::Integral,
         }),
         _ => None,

@@ -54,4 +54,5 @@ mod side_by_side;
 mod singular_positions;
 mod steps_in_use;
 mod turned_factors;
+mod windows;
 mod work_of_gradients;

@@ -5,8 +5,8 @@ use super::gradients_match_complex_step::{compare, explicit, implicit};
 use crate::reference;
 
 use flexbody_mathematics::math::{Mat3, Vec3, rotation};
-use flexbody_mechanics::functions::evaluate::sample;
 use flexbody_mechanics::functions::instant::DeformationKind;
+use flexbody_mechanics::functions::samples::sample;
 use flexbody_mechanics::functions::stations::Largest;
 use flexbody_mechanics::functions::{Bound, Function, Instant, Reduction, Scene};
 use flexbody_mechanics::integrate::{Method, Multipliers, Settings, Trajectory, simulate};
@@ -81,10 +81,8 @@ fn functions(model: &Model<f64>, first: usize, numbers: &mut Numbers) -> Vec<Fun
         },
         Reduction::InducedExponential { rho },
     ];
-    let reduced = |(i, instant)| Function::Reduced {
-        instant,
-        reduction: reductions[(i + first) % reductions.len()],
-    };
+    let reduced =
+        |(i, instant)| Function::reduced(instant, reductions[(i + first) % reductions.len()]);
     all.into_iter().enumerate().map(reduced).collect()
 }
 
@@ -220,7 +218,7 @@ fn flexible(model: &Model<f64>, first: usize) -> Vec<Function<f64>> {
             kind,
             largest,
         };
-        all.push(Function::Reduced { instant, reduction });
+        all.push(Function::reduced(instant, reduction));
     }
     all
 }
@@ -270,9 +268,7 @@ fn vectors(
     run: &Trajectory<f64>,
     component: impl Fn(usize) -> Instant<f64>,
 ) -> Vec<Vec3<f64>> {
-    let all: Vec<Vec<f64>> = (0..3)
-        .map(|k| sample(&component(k), &None, model, run))
-        .collect();
+    let all: Vec<Vec<f64>> = (0..3).map(|k| sample(&component(k), model, run)).collect();
     let at = |i: usize| Vec3::new(all[0][i], all[1][i], all[2][i]);
     (0..=run.last()).map(at).collect()
 }
@@ -395,11 +391,11 @@ fn sections_and_time_are_one_maximum() {
         bound: Bound::Below,
     };
     let instant = one(&forms);
-    let found = Function::Reduced { instant, reduction }.evaluate(&model, &run);
+    let found = Function::reduced(instant, reduction).evaluate(&model, &run);
     let mut sum = 0.0;
     let mut most = f64::NEG_INFINITY;
     for form in &forms {
-        let values = sample(&one(std::slice::from_ref(form)), &None, &model, &run);
+        let values = sample(&one(std::slice::from_ref(form)), &model, &run);
         for (k, value) in values.into_iter().enumerate() {
             sum += run.quadrature_weight(k) * (rho * value).exp() / forms.len() as f64;
             most = most.max(value);

@@ -2,7 +2,7 @@
 
 use flexbody_mathematics::math::scalar::COMPLEX_STEP;
 use flexbody_mathematics::math::{Complex64, Dual, Vec3, rotation};
-use flexbody_mechanics::functions::{Bound, Function, Instant, Reduction, Release};
+use flexbody_mechanics::functions::{Bound, Function, Instant, Quantity, Reduction, Release};
 use flexbody_mechanics::integrate::Spacing;
 use flexbody_mechanics::model::JointKind;
 use flexbody_problem::*;
@@ -139,12 +139,13 @@ fn the_trebuchet_has_the_masses_inertias_and_places_of_the_reference() {
     match &scene.functions[..] {
         [
             Function::Reduced {
-                instant:
-                    Instant::Range {
+                of:
+                    Quantity::Of(Instant::Range {
                         projectile,
                         gate: Some(gate),
-                    },
+                    }),
                 reduction,
+                ..
             },
             Function::Clearance {
                 release: Release::Best { rho, .. },

@@ -52,3 +52,4 @@ mod stress_pictures;
 mod thickness_sheet;
 mod trebuchets;
 mod unfollowed;
+mod windows;

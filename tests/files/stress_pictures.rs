@@ -9,7 +9,6 @@ use flexbody_figures::plots::{History, Limit, histories};
 use flexbody_figures::shell_fields;
 use flexbody_figures::traces::positions;
 use flexbody_mechanics::functions::Function;
-use flexbody_mechanics::functions::evaluate::sample;
 use flexbody_problem::Problem;
 use serde_json::Value;
 use std::path::Path;
@@ -26,9 +25,7 @@ fn moved(problem: &Problem) -> Simulation {
 fn sampled(problem: &Problem, motion: &Simulation, name: &str) -> Vec<f64> {
     let found = problem.function_names.iter().position(|own| own == name);
     match &motion.written.functions[found.expect("a function")] {
-        Function::Reduced { instant, .. } => {
-            sample(instant, &None, &motion.written.model, motion.motion())
-        }
+        Function::Reduced { of, .. } => of.sample(&motion.written.model, motion.motion()),
         other => panic!("{other:?}"),
     }
 }

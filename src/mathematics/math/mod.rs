@@ -6,6 +6,7 @@ pub mod rotation;
 pub mod scalar;
 pub mod slices;
 pub mod soft_max;
+pub mod unit;
 
 pub use parameters::{Parameters, parameters};
 pub use scalar::{Complex64, Dual, Mat3, Scalar, Vec3};

@@ -17,8 +17,8 @@ struct Term<'a> {
     linearised: Linearised<'a>,
     /// Number of the function in the scene.
     function: usize,
-    /// Multipliers of the joint whose reaction the function observes.
-    joint: Option<JointMultipliers<'a, f64>>,
+    /// For each quantity of an instant in it: the multipliers of the joint whose reaction it is.
+    joints: Vec<Option<JointMultipliers<'a, f64>>>,
 }
 
 /// One target during the backward march.
@@ -42,15 +42,19 @@ impl<'a> Sensitivity<'a> {
         let (nq, nv) = (run.numbering.positions(), run.numbering.velocities());
         let term = |number: usize, weights: Option<&[f64]>| {
             let function = scene.function(number);
-            let joint = function.instant().and_then(|own| own.reacting_joint());
-            let joint = joint.map(|j| JointMultipliers::new(&scene.model, &run.numbering, j));
+            let model = &scene.model;
+            let linearised = match weights {
+                Some(weights) => Linearised::history(function, weights, (model, run)),
+                None => Linearised::new(function, model, run),
+            };
+            let joint = |which| {
+                let joint = linearised.reacting_joint(which)?;
+                Some(JointMultipliers::new(model, &run.numbering, joint))
+            };
             Term {
-                linearised: match weights {
-                    Some(weights) => Linearised::history(function, weights, run),
-                    None => Linearised::new(function, &scene.model, run),
-                },
+                joints: (0..linearised.quantities()).map(joint).collect(),
+                linearised,
                 function: number,
-                joint,
             }
         };
         let (terms, by_duration) = match target {
@@ -91,24 +95,39 @@ impl<'a> Sensitivity<'a> {
         let mut by_time = 0.0;
         for term in (self.terms.iter_mut()).filter(|term| term.linearised.depends_on(k)) {
             let (model, own) = self.cot.model_and_function(term.function);
-            let rows = term.joint.as_ref().map_or(0, JointMultipliers::count);
-            let mut lambda = vec![0.0; rows];
+            let linearised = &term.linearised;
+            let plain = Snapshot::of(&scene.model, run, k);
+            for (which, joint) in term.joints.iter_mut().enumerate() {
+                if !linearised.depends_through(which, k) {
+                    continue;
+                }
+                let mut lambda = vec![0.0; joint.as_ref().map_or(0, JointMultipliers::count)];
+                let mut out = SnapshotCotangent {
+                    y: &mut *y,
+                    v: &mut *v,
+                    a: &mut *a,
+                    lambda: &mut lambda,
+                    time: &mut by_time,
+                    model: &mut *model,
+                };
+                let at = Snapshot {
+                    joint: (joint.as_mut()).map_or(Rows::none(), |joint| joint.at(run, k)),
+                    ..plain
+                };
+                linearised.pull_quantity(which, k, &at, &mut out, own);
+                if let Some(joint) = joint {
+                    by_time += joint.pull_back(&lambda, (&mut *y, &mut *v), model);
+                }
+            }
             let mut out = SnapshotCotangent {
                 y: &mut *y,
                 v: &mut *v,
                 a: &mut *a,
-                lambda: &mut lambda,
+                lambda: &mut [],
                 time: &mut by_time,
                 model: &mut *model,
             };
-            let at = Snapshot {
-                joint: (term.joint.as_mut()).map_or(Rows::none(), |joint| joint.at(run, k)),
-                ..Snapshot::of(&scene.model, run, k)
-            };
-            term.linearised.pull_back(k, &at, &mut out, own);
-            if let Some(joint) = &mut term.joint {
-                by_time += joint.pull_back(&lambda, (&mut *y, &mut *v), model);
-            }
+            linearised.pull_flight(k, &plain, &mut out, own);
         }
         self.by_duration += run.grid.rate(run.instants[k]) * by_time;
         true
@@ -127,7 +146,10 @@ impl<'a> Sensitivity<'a> {
         a: &[f64],
         counts: &mut WorkCounts,
     ) -> Result<(), IntegrationFailure> {
-        let joints = self.terms.iter().filter_map(|term| term.joint.as_ref());
+        let joints = self
+            .terms
+            .iter()
+            .flat_map(|term| term.joints.iter().flatten());
         counts.factorisations += joints.map(JointMultipliers::factorisations).sum::<usize>();
         let before = saddle.factorisations;
         let mut y = vec![0.0; a.len()];

@@ -3,17 +3,18 @@
 use super::flight::Flight;
 use super::function::{Function, Reduction, Release};
 use super::instant::{Instant, Projectile};
-use super::multipliers::{JointMultipliers, Rows};
 use super::peak::{self, Maximum, Point};
+use super::quantity::Quantity;
+use super::samples::{sample, sample_at, turn};
 use super::snapshot::Snapshot;
 use super::turning::turns;
+use super::window::Window;
+use super::windowed::{self, turns_at};
 use crate::integrate::Trajectory;
 use crate::linalg::SolveScalar;
-use crate::math::Complex64;
 use crate::math::soft_max::{Bound, SoftMax};
+use crate::math::{Complex64, Parameters};
 use crate::model::Model;
-use crate::system::Numbering;
-use std::ops::RangeInclusive;
 
 /// Below this sharpness the samples resolve a peak.
 const COARSE: f64 = 0.3;
@@ -42,7 +43,14 @@ impl<S: SolveScalar> Function<S> {
     /// Value over a run of `model`, in any scalar. Those of `f64` and `Complex64` are compiled here.
     pub(super) fn evaluate_in(&self, model: &Model<S>, run: &Trajectory<S>) -> Evaluated<S> {
         match self {
-            Function::Reduced { instant, reduction } => reduce(instant, *reduction, model, run),
+            Function::Reduced {
+                of,
+                during,
+                reduction,
+            } => match during {
+                None => reduce(of, *reduction, model, run),
+                Some(window) => reduce_during(of, window, *reduction, (model, run)),
+            },
             Function::OfDesign { value, .. } => Evaluated {
                 value: *value,
                 maximum: None,
@@ -91,23 +99,43 @@ impl Function<Complex64> {
     /// Σ |w_k Im z_k| of a reduction with the weights w_k over the values z_k of a motion: the size of the terms
     /// whose sum is the imaginary part of the value. Zero for functions that are no such sum.
     pub fn terms_over_motion(&self, model: &Model<Complex64>, run: &Trajectory<Complex64>) -> f64 {
-        let Function::Reduced { instant, reduction } = self else {
+        let Function::Reduced {
+            of,
+            during,
+            reduction,
+        } = self
+        else {
             return 0.0;
         };
-        let turns = turns(instant.watched_rotation(), run);
+        let values = || of.sample_in((model, run), 0..=run.last());
         let sum = |weight: &dyn Fn(usize) -> f64, values: &[Complex64]| {
             let terms = values.iter().enumerate();
             terms.map(|(k, z)| (z.im * weight(k)).abs()).sum()
         };
+        if let Some(window) = during {
+            let real = run.real();
+            let real_model = model.map(&mut |x| x.re);
+            let window = window.map(&mut |x| x.re);
+            let Some(ends) = window.place(&real_model, &real) else {
+                return 0.0;
+            };
+            let values = values();
+            let plain: Vec<f64> = values.iter().map(|z| z.re).collect();
+            let by = windowed::derivatives(*reduction, &real, &ends, &plain);
+            return sum(&|k| by.by_values[k], &values);
+        }
         match *reduction {
             Reduction::Final => 0.0,
-            Reduction::Integral => {
-                let duration = run.time(run.last()).re;
-                let weight = |k| duration * run.quadrature_weight(k).re;
-                sum(&weight, &sample_in(instant, &turns, model, run))
+            Reduction::Integral | Reduction::Mean => {
+                let scale = match reduction {
+                    Reduction::Mean => 1.0,
+                    _ => run.time(run.last()).re,
+                };
+                let weight = |k| scale * run.quadrature_weight(k).re;
+                sum(&weight, &values())
             }
             Reduction::Ks { rho, .. } | Reduction::InducedExponential { rho } => {
-                let values = sample_in(instant, &turns, model, run);
+                let values = values();
                 let soft = SoftMax::new(&values, |k| run.quadrature_weight(k), rho);
                 sum(&|k| soft.weights[k].re, &values)
             }
@@ -115,13 +143,41 @@ impl Function<Complex64> {
     }
 }
 
+/// The reduction over a window; NaN if the window is not inside the motion, or empty.
+fn reduce_during<S: SolveScalar>(
+    of: &Quantity<S>,
+    window: &Window<S>,
+    reduction: Reduction,
+    (model, run): (&Model<S>, &Trajectory<S>),
+) -> Evaluated<S> {
+    let Some(ends) = window.place(model, run) else {
+        return Evaluated {
+            value: S::from(f64::NAN),
+            maximum: None,
+            peak_sharpness: 0.0,
+        };
+    };
+    let aggregate = matches!(
+        reduction,
+        Reduction::Ks { .. } | Reduction::InducedExponential { .. }
+    );
+    let (values, largest) = match aggregate {
+        true => of.values_and_largest(model, run),
+        false => (of.sample_in((model, run), 0..=run.last()), Vec::new()),
+    };
+    Evaluated {
+        value: windowed::value(reduction, run, &ends, &values),
+        maximum: aggregate.then(|| windowed::maximum(run, &ends, &largest)),
+        peak_sharpness: 0.0,
+    }
+}
+
 fn reduce<S: SolveScalar>(
-    instant: &Instant<S>,
+    of: &Quantity<S>,
     reduction: Reduction,
     model: &Model<S>,
     run: &Trajectory<S>,
 ) -> Evaluated<S> {
-    let turns = turns(instant.watched_rotation(), run);
     let plain = |value| Evaluated {
         value,
         maximum: None,
@@ -130,19 +186,20 @@ fn reduce<S: SolveScalar>(
     match reduction {
         Reduction::Final => {
             let last = run.last();
-            plain(sample_at(instant, &turns, model, run, last..=last)[0])
+            plain(of.sample_in((model, run), last..=last)[0])
         }
-        Reduction::Integral => {
-            let values = sample_in(instant, &turns, model, run);
+        Reduction::Integral | Reduction::Mean => {
+            let values = of.sample_in((model, run), 0..=run.last());
             let mean = (0..=run.last()).fold(S::zero(), |sum, k| {
                 sum + values[k] * run.quadrature_weight(k)
             });
-            plain(mean * run.time(run.last()))
+            plain(match reduction {
+                Reduction::Mean => mean,
+                _ => mean * run.time(run.last()),
+            })
         }
         Reduction::Ks { rho, .. } | Reduction::InducedExponential { rho } => {
-            let both = |at: &Snapshot<S>, turns| instant.value_and_largest(at, turns);
-            let all = sample_with(instant, &turns, (model, run), 0..=run.last(), both);
-            let (values, largest): (Vec<S>, Vec<S>) = all.into_iter().unzip();
+            let (values, largest) = of.values_and_largest(model, run);
             let soft = SoftMax::new(&values, |k| run.quadrature_weight(k), rho);
             let value = match reduction {
                 Reduction::Ks { bound, .. } => match bound {
@@ -191,16 +248,7 @@ pub(super) fn turning<S: SolveScalar>(
 ) -> (SoftMax<S>, Vec<Point<S>>) {
     let points = peak::points(run, values);
     let heights: Vec<S> = points.iter().map(|point| point.value).collect();
-    let rises = |i: usize| heights[i + 1].re() > heights[i].re();
-    let last = heights.len() - 1;
-    let sign = |rises: bool| if rises { 1.0 } else { -1.0 };
-    // +1 at a maximum, −1 at a minimum, 0 elsewhere. Before the start and after the end the value
-    // is −∞.
-    let count = |i: usize| {
-        let before = sign(i == 0 || rises(i - 1));
-        let after = sign(i != last && rises(i));
-        S::from(0.5 * (before - after))
-    };
+    let count = |i: usize| S::from(turns_at(&heights, i));
     (SoftMax::new(&heights, count, rho), points)
 }
 
@@ -211,7 +259,12 @@ pub fn between_samples(
     model: &Model<f64>,
     run: &Trajectory<f64>,
 ) -> Option<f64> {
-    let Function::Reduced { instant, reduction } = function else {
+    let Function::Reduced {
+        of,
+        during: None,
+        reduction,
+    } = function
+    else {
         return None;
     };
     let rho = match *reduction {
@@ -220,12 +273,14 @@ pub fn between_samples(
             bound: Bound::Below,
         }
         | Reduction::InducedExponential { rho } => rho,
-        Reduction::Ks { .. } | Reduction::Final | Reduction::Integral => return None,
+        Reduction::Ks { .. } | Reduction::Final | Reduction::Integral | Reduction::Mean => {
+            return None;
+        }
     };
     if function.evaluate(model, run).peak_sharpness < COARSE {
         return None;
     }
-    let values = sample_in(instant, &turns(instant.watched_rotation(), run), model, run);
+    let values = of.sample(model, run);
     let [sum, moment, top] = peak::exponential_integrals(run, &values, rho);
     Some(match reduction {
         Reduction::InducedExponential { .. } => top + moment / sum,
@@ -240,9 +295,7 @@ pub fn ungated_maximum(
     model: &Model<f64>,
     run: &Trajectory<f64>,
 ) -> Option<f64> {
-    let Function::Reduced { instant, .. } = function else {
-        return None;
-    };
+    let instant = function.instant()?;
     let Instant::Range {
         projectile,
         gate: gate @ Some(_),
@@ -259,66 +312,8 @@ pub fn ungated_maximum(
         let at = Snapshot::of(model, run, k);
         at.openness(gate, turn(&turns, k)) > 0.5
     };
-    let values = sample(&free, &turns, model, run);
+    let values = sample(&free, model, run);
     Some(peak::maximum_where(run, &values, open).value).filter(|most| most.is_finite())
-}
-
-/// Values of an instant quantity at all instants of a run.
-pub fn sample(
-    instant: &Instant<f64>,
-    turns: &Option<Vec<f64>>,
-    model: &Model<f64>,
-    run: &Trajectory<f64>,
-) -> Vec<f64> {
-    sample_in(instant, turns, model, run)
-}
-
-/// [`sample`] in any scalar.
-pub(super) fn sample_in<S: SolveScalar>(
-    instant: &Instant<S>,
-    turns: &Option<Vec<f64>>,
-    model: &Model<S>,
-    run: &Trajectory<S>,
-) -> Vec<S> {
-    sample_at(instant, turns, model, run, 0..=run.last())
-}
-
-/// Values of an instant quantity at some instants of a run.
-fn sample_at<S: SolveScalar>(
-    instant: &Instant<S>,
-    turns: &Option<Vec<f64>>,
-    model: &Model<S>,
-    run: &Trajectory<S>,
-    instants: RangeInclusive<usize>,
-) -> Vec<S> {
-    let value = |at: &Snapshot<S>, turns| instant.value(at, turns);
-    sample_with(instant, turns, (model, run), instants, value)
-}
-
-/// What `of` takes from some instants of a run. Multipliers are computed if the quantity needs them.
-pub(super) fn sample_with<S: SolveScalar, T>(
-    instant: &Instant<S>,
-    turns: &Option<Vec<f64>>,
-    (model, run): (&Model<S>, &Trajectory<S>),
-    instants: RangeInclusive<usize>,
-    of: impl Fn(&Snapshot<S>, f64) -> T,
-) -> Vec<T> {
-    // The model may have rows that were left out of the run.
-    let numbering = instant.reacting_joint().map(|_| Numbering::new(model));
-    let joint = numbering.as_ref().zip(instant.reacting_joint());
-    let mut joint = joint.map(|(numbering, j)| JointMultipliers::new(model, numbering, j));
-    let value = |k: usize| {
-        let at = Snapshot {
-            joint: (joint.as_mut()).map_or(Rows::none(), |joint| joint.at(run, k)),
-            ..Snapshot::of(model, run, k)
-        };
-        of(&at, turn(turns, k))
-    };
-    instants.map(value).collect()
-}
-
-pub(super) fn turn(turns: &Option<Vec<f64>>, k: usize) -> f64 {
-    turns.as_ref().map_or(0.0, |turns| turns[k])
 }
 
 /// Softmax weights and sampled gated ranges of a release around the best instant.
@@ -349,7 +344,7 @@ pub(super) fn release_weights<S: SolveScalar>(
         gate: *gate,
     };
     let turns = turns(range.watched_rotation(), run);
-    let values = sample_in(&range, &turns, model, run);
+    let values = sample_at(&range, (model, run), 0..=run.last());
     let soft = SoftMax::new(&values, |k| run.quadrature_weight(k), *rho);
     ReleaseWeights {
         weights: without_negligible(soft.weights),

@@ -1,6 +1,8 @@
 //! A function of interest: an instant quantity reduced over the run to one number.
 
 use super::instant::{Gate, Instant, Projectile};
+use super::quantity::Quantity;
+use super::window::{Edge, Window};
 use crate::math::soft_max::Bound;
 use crate::math::{Scalar, Vec3, parameters};
 use crate::system::measures::Wrench;
@@ -8,10 +10,12 @@ use crate::system::measures::Wrench;
 /// Reduction of the values g_k of an instant quantity to one number.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum Reduction {
-    /// The value at the end of the run.
+    /// The value at the end of the run, or of the window.
     Final,
     /// ∫ g dt.
     Integral,
+    /// (1/T) ∫ g dt, with the length T of the run or of the window.
+    Mean,
     /// Kreisselmeier–Steinhauser function. Below the maximum: its integral form
     /// g_m + (1/ρ) ln[(1/T) ∫ exp(ρ (g − g_m)) dt], a smooth lower bound that does not depend on
     /// the number of samples (Kennedy & Hicken 2015, eq. 10). Above the maximum:
@@ -50,10 +54,12 @@ pub enum Release<S> {
 /// A function of interest.
 #[derive(Clone, Debug)]
 pub enum Function<S> {
-    /// An instant quantity, reduced over the run.
+    /// A quantity, reduced over the run or a window.
     Reduced {
-        /// Quantity at each instant.
-        instant: Instant<S>,
+        /// The quantity.
+        of: Quantity<S>,
+        /// The window; `None` for the whole run.
+        during: Option<Window<S>>,
         /// Its reduction to one number.
         reduction: Reduction,
     },
@@ -81,7 +87,7 @@ pub enum Function<S> {
 }
 
 parameters!(enum Function {
-    Reduced { reduction; instant },
+    Reduced { reduction; of, during },
     Clearance {; projectile, release, distance, top },
     Duration,
     OfDesign { unit; value },
@@ -101,91 +107,125 @@ pub enum Part<'a> {
 }
 
 impl<S: Scalar> Function<S> {
+    /// A quantity of an instant, reduced over the whole run.
+    pub fn reduced(instant: Instant<S>, reduction: Reduction) -> Self {
+        Self::Reduced {
+            of: Quantity::Of(instant),
+            during: None,
+            reduction,
+        }
+    }
+
     /// SI unit of the value.
     pub fn unit(&self) -> String {
         match self {
             Function::Reduced {
-                instant,
+                of,
                 reduction: Reduction::Integral,
-            } => instant.integral_unit(),
-            Function::Reduced { instant, .. } => instant.unit().to_owned(),
+                ..
+            } => of.integral_unit(),
+            Function::Reduced { of, .. } => of.unit(),
             Function::Clearance { .. } => "m".to_owned(),
             Function::Duration => "s".to_owned(),
             Function::OfDesign { unit, .. } => (*unit).to_owned(),
         }
     }
 
-    /// The quantity at an instant, if the function reduces one.
-    pub fn instant(&self) -> Option<&Instant<S>> {
+    /// The quantity that the function reduces, if it does.
+    pub fn quantity(&self) -> Option<&Quantity<S>> {
         match self {
-            Function::Reduced { instant, .. } => Some(instant),
+            Function::Reduced { of, .. } => Some(of),
             Function::Clearance { .. } | Function::Duration | Function::OfDesign { .. } => None,
         }
     }
 
-    /// The component of a joint's reaction that the function observes, if any.
-    pub fn reaction(&self) -> Option<&Wrench<S>> {
-        match self.instant() {
-            Some(Instant::Reaction(wrench)) => Some(wrench),
-            _ => None,
+    /// The quantity, if it is one of an instant.
+    pub fn instant(&self) -> Option<&Instant<S>> {
+        self.quantity().and_then(Quantity::instant)
+    }
+
+    /// All quantities of an instant in what the function reduces and in the ends of its window.
+    pub fn instants(&self) -> Vec<&Instant<S>> {
+        let mut all = Vec::new();
+        if let Function::Reduced { of, during, .. } = self {
+            let edges = during.iter().flat_map(|own| [&own.from, &own.to]);
+            let edges = edges.filter_map(Edge::quantity);
+            for quantity in std::iter::once(of).chain(edges) {
+                quantity.for_each(&mut |instant| all.push(instant));
+            }
         }
+        all
     }
 
     /// The same, to be changed.
-    pub fn reaction_mut(&mut self) -> Option<&mut Wrench<S>> {
-        match self {
-            Function::Reduced {
-                instant: Instant::Reaction(wrench),
-                ..
-            } => Some(wrench),
-            _ => None,
+    pub fn instants_mut(&mut self) -> Vec<&mut Instant<S>> {
+        let mut all = Vec::new();
+        if let Function::Reduced { of, during, .. } = self {
+            let edges = during.iter_mut();
+            let edges = edges.flat_map(|own| [&mut own.from, &mut own.to]);
+            let edges = edges.filter_map(Edge::quantity_mut);
+            for quantity in std::iter::once(of).chain(edges) {
+                quantity.for_each_mut(&mut |instant| all.push(instant));
+            }
         }
+        all
     }
 
-    /// The joint or load that the function observes by its number, if any.
-    pub fn part(&mut self) -> Option<Part<'_>> {
-        let Function::Reduced { instant, .. } = self else {
+    /// One of them, by its number.
+    pub(super) fn instant_mut(&mut self, which: usize) -> Option<&mut Instant<S>> {
+        let Function::Reduced { of, during, .. } = self else {
             return None;
         };
-        match instant {
+        let edges = during.iter_mut();
+        let edges = edges.flat_map(|own| [&mut own.from, &mut own.to]);
+        let mut all = std::iter::once(of).chain(edges.filter_map(Edge::quantity_mut));
+        let mut left = which;
+        all.find_map(|own| own.nth_mut(&mut left))
+    }
+
+    /// The components of reactions of joints that the function observes.
+    pub fn reactions(&self) -> Vec<&Wrench<S>> {
+        let all = self.instants().into_iter();
+        all.filter_map(|instant| match instant {
+            Instant::Reaction(wrench) => Some(wrench),
+            _ => None,
+        })
+        .collect()
+    }
+
+    /// The same, to be changed.
+    pub fn reactions_mut(&mut self) -> Vec<&mut Wrench<S>> {
+        let all = self.instants_mut().into_iter();
+        all.filter_map(|instant| match instant {
+            Instant::Reaction(wrench) => Some(wrench),
+            _ => None,
+        })
+        .collect()
+    }
+
+    /// The joints and loads that the function observes by their numbers.
+    pub fn parts(&mut self) -> Vec<Part<'_>> {
+        let all = self.instants_mut().into_iter();
+        all.filter_map(|instant| match instant {
             Instant::Reaction(wrench) => Some(Part::Joint(&mut wrench.joint)),
             Instant::Slide(joint) => Some(Part::Joint(joint)),
+            Instant::JointRate { joint, .. } => Some(Part::Joint(joint)),
             Instant::Spring(spring) => Some(Part::Load(&mut spring.load)),
+            Instant::Power(load) => Some(Part::Load(load)),
             _ => None,
-        }
+        })
+        .collect()
     }
 
     /// Calls `visit` with every body that the function observes and its point; with `None` if it
     /// observes the rotation of the body.
     pub fn for_each_place(&mut self, visit: &mut impl FnMut(&mut usize, Option<&mut Vec3<S>>)) {
         match self {
-            Function::Reduced { instant, .. } => match instant {
-                Instant::Position { body, point, .. }
-                | Instant::Velocity { body, point, .. }
-                | Instant::Acceleration { body, point, .. }
-                | Instant::Speed { body, point }
-                | Instant::SpeedSquared { body, point } => visit(body, Some(point)),
-                Instant::AngularVelocity { body, .. } => visit(body, None),
-                Instant::Energy(_)
-                | Instant::Momentum { .. }
-                | Instant::AngularMomentum(_)
-                | Instant::StrainEnergy(_)
-                | Instant::ShellStress { .. }
-                | Instant::Deformation { .. }
-                | Instant::LargestDeformation { .. }
-                | Instant::Reaction(_)
-                | Instant::Slide(_)
-                | Instant::Spring(_) => {}
-                Instant::Rotation(rotation) => {
-                    rotation.for_each_body(&mut |body| visit(body, None))
+            Function::Reduced { .. } => {
+                for instant in self.instants_mut() {
+                    instant.for_each_place(visit);
                 }
-                Instant::Range { projectile, gate } => {
-                    visit(&mut projectile.body, Some(&mut projectile.point));
-                    if let Some(gate) = gate {
-                        gate.rotation.for_each_body(&mut |body| visit(body, None));
-                    }
-                }
-            },
+            }
             Function::Duration | Function::OfDesign { .. } => {}
             Function::Clearance {
                 projectile,
@@ -201,6 +241,47 @@ impl<S: Scalar> Function<S> {
                     if let Some(gate) = gate {
                         gate.rotation.for_each_body(&mut |body| visit(body, None));
                     }
+                }
+            }
+        }
+    }
+}
+
+impl<S: Scalar> Instant<S> {
+    /// Calls `visit` with every body that the quantity observes and its point; with `None` if it observes the
+    /// rotation of the body.
+    pub fn for_each_place(&mut self, visit: &mut impl FnMut(&mut usize, Option<&mut Vec3<S>>)) {
+        match self {
+            Instant::Position { body, point, .. }
+            | Instant::Velocity { body, point, .. }
+            | Instant::Acceleration { body, point, .. }
+            | Instant::Speed { body, point }
+            | Instant::SpeedSquared { body, point } => visit(body, Some(point)),
+            Instant::Felt { body, point, .. } => visit(body, Some(point)),
+            Instant::Seen(seen) => {
+                visit(&mut seen.body, Some(&mut seen.point));
+                if let Some(from) = &mut seen.from {
+                    visit(from, Some(&mut seen.eye));
+                }
+            }
+            Instant::AngularVelocity { body, .. } => visit(body, None),
+            Instant::Energy(_)
+            | Instant::Momentum { .. }
+            | Instant::AngularMomentum(_)
+            | Instant::StrainEnergy(_)
+            | Instant::ShellStress { .. }
+            | Instant::Deformation { .. }
+            | Instant::LargestDeformation { .. }
+            | Instant::Reaction(_)
+            | Instant::Power(_)
+            | Instant::JointRate { .. }
+            | Instant::Slide(_)
+            | Instant::Spring(_) => {}
+            Instant::Rotation(rotation) => rotation.for_each_body(&mut |body| visit(body, None)),
+            Instant::Range { projectile, gate } => {
+                visit(&mut projectile.body, Some(&mut projectile.point));
+                if let Some(gate) = gate {
+                    gate.rotation.for_each_body(&mut |body| visit(body, None));
                 }
             }
         }

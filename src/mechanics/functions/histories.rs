@@ -1,8 +1,6 @@
 //! Histories: the quantity behind a function at the samples of a run, and at instants between them.
 
 use super::Function;
-use super::evaluate::sample;
-use super::turning::turns;
 use crate::integrate::Trajectory;
 use crate::model::Model;
 
@@ -18,9 +16,7 @@ pub fn history(
     model: &Model<f64>,
     run: &Trajectory<f64>,
 ) -> Option<Vec<f64>> {
-    let instant = function.instant()?;
-    let turns = turns(instant.watched_rotation(), run);
-    Some(sample(instant, &turns, model, run))
+    Some(function.quantity()?.sample(model, run))
 }
 
 /// Instants of a run as weighted sums of its samples. Values there are linear in the samples, so the
@@ -158,7 +154,7 @@ fn reading(run: &Trajectory<f64>, shown: &[usize], at: f64) -> Reading {
 }
 
 /// The derivative at `at` of the polynomial through nodes at `place`: pairs (node, weight).
-fn slopes(
+pub(super) fn slopes(
     nodes: &[usize],
     at: f64,
     place: impl Fn(usize) -> f64,

@@ -1,8 +1,10 @@
 //! Quantities at an instant.
 
+use super::seen::{Seen, SeenPart};
 use super::stations::Largest;
 use super::turning::Rotation;
 use crate::math::{Scalar, Vec3, parameters};
+use crate::model::DegreeOfFreedom;
 use crate::model::flexible::Quadratic;
 use crate::system::angular_momentum::AngularMomentum;
 use crate::system::loads::springs::{Spring, SpringPart};
@@ -186,6 +188,26 @@ pub enum Instant<S> {
     },
     /// Component of the reaction of a joint \[N or N m\].
     Reaction(Wrench<S>),
+    /// Component of a point's acceleration in the axes of its body, as a sensor there measures it but for gravity \[m/s²\].
+    Felt {
+        /// The body.
+        body: usize,
+        /// The point.
+        point: Vec3<S>,
+        /// The direction, body axes.
+        direction: Vec3<S>,
+    },
+    /// A point as seen from another body \[m or m/s\].
+    Seen(Seen<S>),
+    /// Power by which a load drives its bodies \[W\].
+    Power(usize),
+    /// Rate of body A of a joint against body B about or along its axis \[rad/s or m/s\].
+    JointRate {
+        /// The joint.
+        joint: usize,
+        /// About or along.
+        dof: DegreeOfFreedom,
+    },
     /// Displacement of body A of a joint against body B along its axis \[m\].
     Slide(usize),
     /// Length, force or torque of a spring \[m, N or N m\].
@@ -223,6 +245,10 @@ parameters!(enum Instant {
     Deformation { flexible, kind, unknowns; form },
     LargestDeformation { flexible, kind, unknowns; largest },
     Reaction(; wrench),
+    Felt { body; point, direction },
+    Seen(; seen),
+    Power(load;),
+    JointRate { joint, dof; },
     Slide(joint;),
     Spring(spring;),
     Rotation(; rotation),
@@ -249,6 +275,16 @@ impl<S: Scalar> Instant<S> {
                 WrenchPart::Force => "N",
                 WrenchPart::Moment => "N m",
             },
+            Instant::Felt { .. } => "m/s²",
+            Instant::Seen(seen) => match seen.part {
+                SeenPart::Position | SeenPart::Distance => "m",
+                SeenPart::Velocity => "m/s",
+            },
+            Instant::Power(_) => "W",
+            Instant::JointRate { dof, .. } => match dof {
+                DegreeOfFreedom::Rotation => "rad/s",
+                DegreeOfFreedom::Translation => "m/s",
+            },
             Instant::Slide(_) => "m",
             Instant::Spring(spring) => match spring.part {
                 SpringPart::Length => "m",
@@ -266,6 +302,7 @@ impl<S: Scalar> Instant<S> {
             "m/s²" => "m/s".into(),
             "m²/s²" => "m²/s".into(),
             "rad/s" => "rad".into(),
+            "W" => "J".into(),
             "kg m/s" => "kg m".into(),
             "kg m²/s" => "kg m²".into(),
             unit => format!("{unit} s"),
@@ -297,6 +334,14 @@ impl<S: Scalar> Instant<S> {
                 WrenchPart::Force => "joint force",
                 WrenchPart::Moment => "joint moment",
             },
+            Instant::Felt { .. } => "acceleration",
+            Instant::Seen(seen) => match seen.part {
+                SeenPart::Position => "relative position",
+                SeenPart::Velocity => "relative velocity",
+                SeenPart::Distance => "distance",
+            },
+            Instant::Power(_) => "power",
+            Instant::JointRate { .. } => "joint rate",
             Instant::Slide(_) => "slide",
             Instant::Spring(spring) => match spring.part {
                 SpringPart::Length => "spring length",
@@ -325,6 +370,10 @@ impl<S: Scalar> Instant<S> {
             | Instant::ShellStress { .. }
             | Instant::Deformation { .. }
             | Instant::LargestDeformation { .. }
+            | Instant::Felt { .. }
+            | Instant::Seen(_)
+            | Instant::Power(_)
+            | Instant::JointRate { .. }
             | Instant::Slide(_)
             | Instant::Spring(_)
             | Instant::Rotation(_)

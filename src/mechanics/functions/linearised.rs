@@ -1,11 +1,15 @@
 //! Functions linearised about a run, for the adjoint.
 
-use super::evaluate::{mean_flight, release_weights, sample, turn, turning, without_negligible};
+use super::evaluate::{mean_flight, release_weights, turning, without_negligible};
 use super::function::{Function, Reduction, Release};
 use super::instant::{Instant, Projectile};
 use super::measure::pull_flight;
+use super::quantity::Quantity;
+use super::samples::turn;
 use super::snapshot::{Snapshot, SnapshotCotangent};
 use super::turning::turns;
+use super::window::{Edge, Window};
+use super::windowed;
 use crate::integrate::Trajectory;
 use crate::math::Parameters;
 use crate::math::soft_max::{Bound, SoftMax};
@@ -18,14 +22,27 @@ struct Weighted {
     weights: Vec<f64>,
 }
 
+impl Weighted {
+    fn new(instant: Instant<f64>, weights: Vec<f64>, run: &Trajectory<f64>) -> Self {
+        Self {
+            turns: turns(instant.watched_rotation(), run),
+            instant,
+            weights: without_negligible(weights),
+        }
+    }
+}
+
 /// A function linearised about a run: its contributions to the cotangents of every instant.
 pub struct Linearised<'a> {
     function: &'a Function<f64>,
     /// Its derivative in the duration at fixed states.
     pub by_duration: f64,
-    quantity: Option<Weighted>,
+    /// The quantities of an instant, in the order of [`Function::instants`]; of a clearance, the range.
+    quantities: Vec<Weighted>,
     flight: Option<WeightedFlight>,
     by_barrier: [f64; 2],
+    /// In the times or values that give the ends of the window.
+    by_ends: [f64; 2],
 }
 
 /// Cotangents of a projectile's flight: `cot` times a weight at every instant.
@@ -49,18 +66,23 @@ impl<'a> Linearised<'a> {
         let mut this = Self {
             function,
             by_duration: 0.0,
-            quantity: None,
+            quantities: Vec::new(),
             flight: None,
             by_barrier: [0.0; 2],
+            by_ends: [0.0; 2],
         };
         match function {
-            Function::Reduced { instant, reduction } => {
-                let turns = turns(instant.watched_rotation(), run);
+            Function::Reduced {
+                of,
+                during: Some(window),
+                reduction,
+            } => this.during(of, window, *reduction, (model, run)),
+            Function::Reduced { of, reduction, .. } => {
                 let instants = 0..=run.last();
                 let weights = match *reduction {
                     Reduction::Final => instants.map(last).collect(),
                     Reduction::Integral => {
-                        let values = sample(instant, &turns, model, run);
+                        let values = of.sample(model, run);
                         this.by_duration =
                             instants.clone().map(|k| values[k] * run.moving[k]).sum();
                         let duration = run.time(run.last());
@@ -68,8 +90,14 @@ impl<'a> Linearised<'a> {
                             .map(|k| duration * run.quadrature_weight(k))
                             .collect()
                     }
+                    Reduction::Mean => {
+                        let values = of.sample(model, run);
+                        this.by_duration =
+                            by_weights(run, |k| run.quadrature_weight(k) * values[k]);
+                        instants.map(|k| run.quadrature_weight(k)).collect()
+                    }
                     Reduction::Ks { rho, bound } => {
-                        let values = sample(instant, &turns, model, run);
+                        let values = of.sample(model, run);
                         match bound {
                             Bound::Below => {
                                 let soft = SoftMax::new(&values, |k| run.quadrature_weight(k), rho);
@@ -89,7 +117,7 @@ impl<'a> Linearised<'a> {
                         }
                     }
                     Reduction::InducedExponential { rho } => {
-                        let values = sample(instant, &turns, model, run);
+                        let values = of.sample(model, run);
                         let soft = SoftMax::new(&values, |k| run.quadrature_weight(k), rho);
                         let mean = soft.induced_exponential(&values);
                         this.by_duration =
@@ -98,11 +126,7 @@ impl<'a> Linearised<'a> {
                         instants.map(by).collect()
                     }
                 };
-                this.quantity = Some(Weighted {
-                    instant: instant.clone(),
-                    turns,
-                    weights: without_negligible(weights),
-                });
+                this.weigh(of, weights, (model, run));
             }
             Function::Clearance {
                 projectile,
@@ -125,19 +149,71 @@ impl<'a> Linearised<'a> {
         this
     }
 
-    /// Σ w_k g(t_k) of the quantity g that `function` reduces, with a weight for every instant of the run.
-    pub fn history(function: &'a Function<f64>, weights: &[f64], run: &Trajectory<f64>) -> Self {
-        let quantity = function.instant().map(|instant| Weighted {
-            instant: instant.clone(),
-            turns: turns(instant.watched_rotation(), run),
-            weights: weights.to_vec(),
-        });
-        Self {
+    /// Σ w_k g(t_k) of the quantity g that `function` reduces, with a weight for every instant of the run of
+    /// `model`.
+    pub fn history(
+        function: &'a Function<f64>,
+        weights: &[f64],
+        (model, run): (&Model<f64>, &Trajectory<f64>),
+    ) -> Self {
+        let mut this = Self {
             function,
             by_duration: 0.0,
-            quantity,
+            quantities: Vec::new(),
             flight: None,
             by_barrier: [0.0; 2],
+            by_ends: [0.0; 2],
+        };
+        if let Some(of) = function.quantity() {
+            this.weigh(of, weights.to_vec(), (model, run));
+        }
+        this
+    }
+
+    /// Adds weights of the values of a quantity.
+    fn weigh(
+        &mut self,
+        of: &Quantity<f64>,
+        weights: Vec<f64>,
+        (model, run): (&Model<f64>, &Trajectory<f64>),
+    ) {
+        let mut all = Vec::new();
+        of.spread((model, run), weights, &mut self.by_duration, &mut all);
+        let all = all.into_iter();
+        let all = all.map(|(instant, weights)| Weighted::new(instant, weights, run));
+        self.quantities.extend(all);
+    }
+
+    /// A reduction over a window, whose ends may depend on the motion. Nothing, if it has no value.
+    fn during(
+        &mut self,
+        of: &Quantity<f64>,
+        window: &Window<f64>,
+        reduction: Reduction,
+        (model, run): (&Model<f64>, &Trajectory<f64>),
+    ) {
+        let Some(ends) = window.place(model, run) else {
+            return;
+        };
+        let values = of.sample(model, run);
+        let by = windowed::derivatives(reduction, run, &ends, &values);
+        self.by_duration += by.by_duration;
+        self.weigh(of, by.by_values, (model, run));
+        for (i, (edge, end)) in [&window.from, &window.to]
+            .into_iter()
+            .zip(&ends)
+            .enumerate()
+        {
+            let by_end = by.by_ends[i];
+            self.by_ends[i] = by_end * end.by_own;
+            self.by_duration += by_end * end.by_duration;
+            if let Edge::When(reach) = edge {
+                let mut weights = vec![0.0; values.len()];
+                for &(k, weight) in &end.by_values {
+                    weights[k] += by_end * weight;
+                }
+                self.weigh(&reach.of, weights, (model, run));
+            }
         }
     }
 
@@ -172,7 +248,7 @@ impl<'a> Linearised<'a> {
             *by = release.rho * (*by - w * sum);
         }
         self.by_barrier = by_barrier;
-        self.quantity = Some(Weighted {
+        self.quantities.push(Weighted {
             instant: release.range,
             turns: release.turns,
             weights: without_negligible(by_range),
@@ -183,70 +259,93 @@ impl<'a> Linearised<'a> {
         });
     }
 
+    /// Number of its quantities of an instant.
+    pub fn quantities(&self) -> usize {
+        self.quantities.len()
+    }
+
+    /// The joint whose multipliers a quantity needs, if any.
+    pub fn reacting_joint(&self, which: usize) -> Option<usize> {
+        self.quantities[which].instant.reacting_joint()
+    }
+
     /// Whether the function depends on the states of instant k.
     pub fn depends_on(&self, k: usize) -> bool {
-        self.quantity.as_ref().is_some_and(|q| q.weights[k] != 0.0)
+        (0..self.quantities.len()).any(|which| self.depends_through(which, k))
             || self.flight.as_ref().is_some_and(|f| f.weights[k] != 0.0)
     }
 
-    /// Adds the derivative in the states of instant k to `out`, and that in the function's
+    /// Whether it depends on the states of instant k through a quantity.
+    pub fn depends_through(&self, which: usize, k: usize) -> bool {
+        self.quantities[which].weights[k] != 0.0
+    }
+
+    /// Adds the derivative in the states of instant k through a quantity to `out`, and that in its parameters
+    /// to `own`.
+    pub fn pull_quantity(
+        &self,
+        which: usize,
+        k: usize,
+        at: &Snapshot<f64>,
+        out: &mut SnapshotCotangent,
+        own: &mut Function<f64>,
+    ) {
+        let Weighted {
+            instant,
+            turns,
+            weights,
+        } = &self.quantities[which];
+        let mut pull = |own: &mut Instant<f64>| {
+            instant.pull_back(at, turn(turns, k), weights[k], out, own);
+        };
+        match own {
+            Function::Duration | Function::OfDesign { .. } => {}
+            Function::Reduced { .. } => {
+                if let Some(own) = own.instant_mut(which) {
+                    pull(own);
+                }
+            }
+            Function::Clearance { release, .. } => {
+                let mut range = instant.map(&mut |_| 0.0);
+                pull(&mut range);
+                if let (
+                    Instant::Range { projectile, gate },
+                    Release::Best {
+                        projectile: by,
+                        gate: by_gate,
+                        ..
+                    },
+                ) = (range, release)
+                {
+                    if let (Some(by_gate), Some(gate)) = (by_gate, gate) {
+                        by_gate.rotation.add(&gate.rotation);
+                    }
+                    by.point += projectile.point;
+                    by.direction += projectile.direction;
+                    by.ground += projectile.ground;
+                }
+            }
+        }
+    }
+
+    /// Adds the derivative in the states of instant k through the flight of a projectile to `out`, and that in its
     /// parameters to `own`.
-    pub fn pull_back(
+    pub fn pull_flight(
         &self,
         k: usize,
         at: &Snapshot<f64>,
         out: &mut SnapshotCotangent,
         own: &mut Function<f64>,
     ) {
-        let mut pull = |own: &mut Instant<f64>| {
-            if let Some(Weighted {
-                instant,
-                turns,
-                weights,
-            }) = &self.quantity
-                && weights[k] != 0.0
-            {
-                instant.pull_back(at, turn(turns, k), weights[k], out, own);
-            }
-        };
-        match own {
-            Function::Duration | Function::OfDesign { .. } => {}
-            Function::Reduced { instant, .. } => pull(instant),
-            Function::Clearance {
-                projectile: by_projectile,
-                release: by_release,
-                ..
-            } => {
-                if let (
-                    Some(weighted),
-                    Release::Best {
-                        projectile: by,
-                        gate: by_gate,
-                        ..
-                    },
-                ) = (&self.quantity, by_release)
-                {
-                    let mut range = weighted.instant.map(&mut |_| 0.0);
-                    pull(&mut range);
-                    if let Instant::Range { projectile, gate } = range {
-                        if let (Some(by_gate), Some(gate)) = (by_gate, gate) {
-                            by_gate.rotation.add(&gate.rotation);
-                        }
-                        by.point += projectile.point;
-                        by.direction += projectile.direction;
-                        by.ground += projectile.ground;
-                    }
-                }
-                if let (Some(flight), Function::Clearance { projectile, .. }) =
-                    (&self.flight, self.function)
-                {
-                    let weight = flight.weights[k];
-                    if weight != 0.0 {
-                        let cot = flight.cot.map(|c| c * weight);
-                        pull_flight(at, projectile, cot, out, by_projectile);
-                    }
-                }
-            }
+        if let (
+            Some(flight),
+            Function::Clearance { projectile, .. },
+            Function::Clearance { projectile: by, .. },
+        ) = (&self.flight, self.function, own)
+            && flight.weights[k] != 0.0
+        {
+            let cot = flight.cot.map(|c| c * flight.weights[k]);
+            pull_flight(at, projectile, cot, out, by);
         }
     }
 
@@ -258,6 +357,21 @@ impl<'a> Linearised<'a> {
                 *top += self.by_barrier[1];
             }
             Function::OfDesign { value, .. } => *value += 1.0,
+            Function::Reduced {
+                during: Some(window),
+                ..
+            } => {
+                for (edge, by) in [&mut window.from, &mut window.to]
+                    .into_iter()
+                    .zip(self.by_ends)
+                {
+                    match edge {
+                        Edge::At(time) => *time += by,
+                        Edge::When(reach) => reach.value += by,
+                        Edge::Start | Edge::End => {}
+                    }
+                }
+            }
             Function::Reduced { .. } | Function::Duration => {}
         }
     }

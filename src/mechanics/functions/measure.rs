@@ -8,7 +8,7 @@ use crate::math::soft_max::SoftMax;
 use crate::math::{Scalar, Vec3};
 use crate::system::bodies::add6;
 use crate::system::joints::JointCotangent;
-use crate::system::loads::springs;
+use crate::system::loads::{springs, work};
 use crate::system::marker::{self, MarkerKinematics};
 use crate::system::{BodyMotion, flexible, measures};
 
@@ -125,6 +125,20 @@ impl<S: Scalar> Instant<S> {
             Instant::Reaction(wrench) => {
                 let (motions, of) = (at.motions(), &at.joint);
                 wrench.value(&at.in_motion(&motions), (of.lambda, of.undetermined))
+            }
+            Instant::Felt {
+                body,
+                point,
+                direction,
+            } => {
+                let motion = at.motion(*body);
+                let a = MarkerKinematics::point(&motion, point).acceleration;
+                direction.dot(&motion.rotation.tr_mul(&a))
+            }
+            Instant::Seen(seen) => seen.value(at),
+            Instant::Power(load) => work::power(&at.in_motion(&at.motions()), *load),
+            Instant::JointRate { joint, dof } => {
+                work::joint_rate(&at.in_motion(&at.motions()), (*joint, *dof))
             }
             Instant::Slide(joint) => measures::slide(&at.model.joints[*joint], &at.motions()),
             Instant::Spring(spring) => springs::value(&at.in_motion(&at.motions()), *spring),
@@ -319,6 +333,46 @@ impl Instant<f64> {
                 let lambda = (at.joint.lambda, &mut *out.lambda);
                 let here = at.in_motion(&motions);
                 *out.time += wrench.pull_back(&here, lambda, weight, &mut to, own);
+            }
+            (
+                Instant::Felt {
+                    body,
+                    point,
+                    direction,
+                },
+                Instant::Felt {
+                    point: by_point,
+                    direction: by_direction,
+                    ..
+                },
+            ) => {
+                let motion = at.motion(*body);
+                let a = MarkerKinematics::point(&motion, point).acceleration;
+                let own = motion.rotation.tr_mul(&a);
+                *by_direction += own * weight;
+                let by = motion.rotation * (direction * weight);
+                *by_point += pull_point(at, *body, point, [ZERO, ZERO, by], out);
+                let turn = (direction * weight).cross(&own);
+                add6(&mut out.y[at.numbering.velocity(*body)..], &ZERO, &turn);
+            }
+            (Instant::Seen(seen), Instant::Seen(own)) => seen.pull_back(at, weight, out, own),
+            (Instant::Power(_) | Instant::JointRate { .. }, _) => {
+                let motions = at.motions();
+                let mut to = JointCotangent {
+                    y: Some(&mut *out.y),
+                    v: Some(&mut *out.v),
+                    model: &mut *out.model,
+                };
+                let here = at.in_motion(&motions);
+                match self {
+                    Instant::Power(load) => {
+                        *out.time += work::pull_power(&here, *load, weight, &mut to);
+                    }
+                    Instant::JointRate { joint, dof } => {
+                        work::pull_joint_rate(&here, (*joint, *dof), weight, &mut to);
+                    }
+                    _ => unreachable!("only these reach here"),
+                }
             }
             (Instant::Slide(joint), _) => {
                 let motions = at.motions();

@@ -17,14 +17,14 @@ const BISECTIONS: usize = 60;
 
 /// A part of the motion and the samples of its polynomial.
 #[derive(Clone, Debug)]
-struct Stretch {
-    samples: Vec<usize>,
+pub(super) struct Stretch {
+    pub samples: Vec<usize>,
     /// Indices of the samples that bound the part.
-    part: Range<usize>,
+    pub part: Range<usize>,
 }
 
 /// The parts of a run in order: cells, or the intervals between samples.
-fn stretches<S: Scalar>(run: &Trajectory<S>) -> Vec<Stretch> {
+pub(super) fn stretches<S: Scalar>(run: &Trajectory<S>) -> Vec<Stretch> {
     let nodes: Vec<usize> = (0..=run.last()).filter(|&k| run.weights[k] > 0.0).collect();
     let mut all = Vec::new();
     if run.has_cells {
@@ -137,7 +137,7 @@ pub struct Point<S> {
 }
 
 impl Stretch {
-    fn polynomial<S: Scalar>(&self, run: &Trajectory<S>, values: &[S]) -> Polynomial {
+    fn polynomial<T: Scalar, S: Scalar>(&self, run: &Trajectory<T>, values: &[S]) -> Polynomial {
         let node = |&k: &usize| (run.instants[k], values[k].re());
         Polynomial {
             nodes: self.samples.iter().map(node).collect(),
@@ -158,12 +158,18 @@ impl Stretch {
     }
 }
 
-/// Samples and turning points of a quantity in order of time, by its polynomials. Between two
-/// neighbours the quantity rises or falls.
-pub fn points<S: Scalar>(run: &Trajectory<S>, values: &[S]) -> Vec<Point<S>> {
-    let sample = |k: usize| Point {
-        value: values[k],
-        of: vec![(k, 1.0)],
+/// Samples and turning points of a quantity in order of time, by its polynomials, each with its fraction of the
+/// duration. Between two neighbours the quantity rises or falls.
+pub(super) fn peaks<T: Scalar, S: Scalar>(
+    run: &Trajectory<T>,
+    values: &[S],
+) -> Vec<(f64, Point<S>)> {
+    let sample = |k: usize| {
+        let point = Point {
+            value: values[k],
+            of: vec![(k, 1.0)],
+        };
+        (run.instants[k], point)
     };
     let mut all = vec![sample(0)];
     for stretch in stretches(run) {
@@ -177,12 +183,63 @@ pub fn points<S: Scalar>(run: &Trajectory<S>, values: &[S]) -> Vec<Point<S>> {
                 let value = of
                     .iter()
                     .fold(S::zero(), |sum, &(k, w)| sum + values[k] * w);
-                all.push(Point { value, of });
+                all.push((at, Point { value, of }));
             }
             all.push(sample(k));
         }
     }
     all
+}
+
+/// [`peaks`] without their fractions.
+pub fn points<S: Scalar>(run: &Trajectory<S>, values: &[S]) -> Vec<Point<S>> {
+    peaks(run, values)
+        .into_iter()
+        .map(|(_, point)| point)
+        .collect()
+}
+
+/// A crossing of zero: its fraction of the duration, the value there as a sum of samples, and the slope of its
+/// polynomial.
+pub(super) struct Crossing {
+    pub at: f64,
+    pub of: Vec<(usize, f64)>,
+    pub slope: f64,
+}
+
+/// The first crossing of zero by the polynomials of a quantity, upwards (`rises`), downwards or both. A quantity that
+/// only touches zero does not cross it.
+pub(super) fn first_crossing<S: Scalar>(
+    run: &Trajectory<S>,
+    values: &[S],
+    rises: Option<bool>,
+) -> Option<Crossing> {
+    let wanted = |from: f64, to: f64| {
+        let up = from < 0.0 && to >= 0.0;
+        let down = from > 0.0 && to <= 0.0;
+        (up && rises != Some(false)) || (down && rises != Some(true))
+    };
+    for stretch in stretches(run) {
+        let polynomial = stretch.polynomial(run, values);
+        let nodes = &polynomial.nodes;
+        let bounds = stretch.part.start..=stretch.part.end;
+        let mut places: Vec<f64> = bounds.map(|i| nodes[i].0).collect();
+        places.extend(stretch.turns(&polynomial));
+        places.sort_by(f64::total_cmp);
+        let pairs = places.windows(2);
+        let mut spans = pairs.map(|pair| (pair[0], pair[1]));
+        let found = spans.find(|&(a, b)| wanted(polynomial.value(a), polynomial.value(b)));
+        if let Some((low, high)) = found {
+            let at = polynomial.zero(low, high);
+            let weights = polynomial.weights(at);
+            return Some(Crossing {
+                at,
+                of: stretch.samples.iter().copied().zip(weights).collect(),
+                slope: polynomial.slope(at),
+            });
+        }
+    }
+    None
 }
 
 /// The first time at which a quantity g that starts on the side `side` of zero is on the other one, by

@@ -1,8 +1,6 @@
 //! The number of quadrature cells per step that sums over the motion need.
 
-use super::evaluate::sample;
-use super::turning::turns;
-use super::{Function, Instant, Reduction, Release, Scene};
+use super::{Function, Instant, Quantity, Reduction, Release, Scene};
 use crate::integrate::Trajectory;
 use crate::integrate::quadrature::{ADDED, LOBATTO, WEIGHTS};
 use crate::model::Model;
@@ -161,12 +159,18 @@ fn sum_of(
     (run, nodes): (&Trajectory<f64>, &[usize]),
     goal: f64,
 ) -> Option<Sum> {
-    let (instant, rho) = match scene.function(f) {
-        Function::Reduced { instant, reduction } => match *reduction {
+    let (of, rho) = match scene.function(f) {
+        // Polynomials between the samples stand for the quantity in a window.
+        Function::Reduced {
+            of,
+            during: Some(_),
+            ..
+        } => (of.clone(), None),
+        Function::Reduced { of, reduction, .. } => match *reduction {
             Reduction::Final => return None,
-            Reduction::Integral => (instant.clone(), None),
+            Reduction::Integral | Reduction::Mean => (of.clone(), None),
             Reduction::Ks { rho, .. } | Reduction::InducedExponential { rho } => {
-                (instant.clone(), Some(rho))
+                (of.clone(), Some(rho))
             }
         },
         Function::Clearance { release, .. } => match release {
@@ -175,12 +179,11 @@ fn sum_of(
                 rho,
                 projectile,
                 gate,
-            } => (Instant::Range { projectile, gate }, Some(rho)),
+            } => (Quantity::Of(Instant::Range { projectile, gate }), Some(rho)),
         },
         Function::Duration | Function::OfDesign { .. } => return None,
     };
-    let turns = turns(instant.watched_rotation(), run);
-    let all = sample(&instant, &turns, &scene.model, run);
+    let all = of.sample(&scene.model, run);
     let values: Vec<f64> = nodes.iter().map(|&k| all[k]).collect();
     let terms: Vec<f64> = match rho {
         None => values,
@@ -193,7 +196,8 @@ fn sum_of(
     let total: f64 = weighed.map(|(x, &k)| x.abs() * run.weights[k]).sum();
     // A quantity that is zero but for round-off is as accurate as its unit in this scene. Inside steps accelerations are
     // less accurate than the motion.
-    let unit = instant.unit();
+    let unit = of.unit();
+    let unit = unit.as_str();
     let least = match (unit, rho) {
         ("m/s²", rho) => rho.unwrap_or(1.0) * natural(unit, &scene.model, run),
         (_, None) => NOISE / goal * natural(unit, &scene.model, run),

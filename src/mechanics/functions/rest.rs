@@ -1,9 +1,10 @@
 //! Zeros of norms: of the speed of a point and of the length of a spring. They have kinks there, in time as
 //! |v| ~ |t − t0|, and in the design.
 
-use super::evaluate::sample;
 use super::function::{Function, Reduction};
 use super::instant::Instant;
+use super::quantity::Quantity;
+use super::samples::sample;
 use super::snapshot::Snapshot;
 use crate::integrate::Trajectory;
 use crate::math::Vec3;
@@ -24,7 +25,12 @@ pub fn vanishing(
     run: &Trajectory<f64>,
     part: f64,
 ) -> Option<&'static str> {
-    let Function::Reduced { instant, reduction } = function else {
+    let Function::Reduced {
+        of: Quantity::Of(instant),
+        during: None,
+        reduction,
+    } = function
+    else {
         return None;
     };
     let length = length_scale(model);
@@ -43,10 +49,13 @@ pub fn vanishing(
         }
         _ => return None,
     };
-    let values = sample(&norm, &None, model, run);
+    let values = sample(&norm, model, run);
     let first = match reduction {
         Reduction::Final => run.last(),
-        Reduction::Integral | Reduction::Ks { .. } | Reduction::InducedExponential { .. } => 0,
+        Reduction::Integral
+        | Reduction::Mean
+        | Reduction::Ks { .. }
+        | Reduction::InducedExponential { .. } => 0,
     };
     let zero = |value: &f64| value.abs() <= part * size;
     values[first..].iter().all(zero).then_some(name)
@@ -60,7 +69,8 @@ pub fn passes_rest(
     run: &Trajectory<f64>,
 ) -> Option<f64> {
     let Function::Reduced {
-        instant: Instant::Speed { body, point },
+        of: Quantity::Of(Instant::Speed { body, point }),
+        during: None,
         reduction,
     } = function
     else {
@@ -75,7 +85,7 @@ pub fn passes_rest(
     // The weight of an instant at rest relative to that of the largest speed.
     let counts = match reduction {
         Reduction::Final => false,
-        Reduction::Integral => true,
+        Reduction::Integral | Reduction::Mean => true,
         Reduction::Ks { rho, .. } | Reduction::InducedExponential { rho } => {
             (-rho * fastest).exp() > f64::EPSILON
         }

@@ -1,8 +1,6 @@
 //! A scene: all that a design determines.
 
-use super::evaluate::sample;
-use super::turning::turns;
-use super::{Function, Instant, Reduction};
+use super::{Function, Quantity, Reduction};
 use crate::integrate::Trajectory;
 use crate::math::{Complex64, Parameters, Scalar, parameters};
 use crate::model::Model;
@@ -37,11 +35,14 @@ pub struct TerminalEvent<S> {
 parameters!(struct TerminalEvent {; measure, value });
 
 impl<S: Scalar> TerminalEvent<S> {
-    /// The event that `instant` reaches `value`.
-    pub fn new(instant: Instant<S>, value: S) -> Self {
-        let reduction = Reduction::Final;
+    /// The event that a quantity reaches `value`.
+    pub fn new(of: Quantity<S>, value: S) -> Self {
         Self {
-            measure: Function::Reduced { instant, reduction },
+            measure: Function::Reduced {
+                of,
+                during: None,
+                reduction: Reduction::Final,
+            },
             value,
         }
     }
@@ -58,7 +59,7 @@ impl TerminalEvent<f64> {
     /// Name of the quantity for messages.
     pub fn describe(&self) -> String {
         match &self.measure {
-            Function::Reduced { instant, .. } => instant.describe().into(),
+            Function::Reduced { of, .. } => of.describe(),
             Function::Clearance { .. } => "clearance".into(),
             Function::Duration => "duration".into(),
             Function::OfDesign { .. } => "design".into(),
@@ -67,11 +68,10 @@ impl TerminalEvent<f64> {
 
     /// g − c at all instants of a run.
     pub fn gaps(&self, model: &Model<f64>, run: &Trajectory<f64>) -> Vec<f64> {
-        let Function::Reduced { instant, .. } = &self.measure else {
+        let Function::Reduced { of, .. } = &self.measure else {
             unreachable!("an event is an instant quantity");
         };
-        let turns = turns(instant.watched_rotation(), run);
-        let all = sample(instant, &turns, model, run);
+        let all = of.sample(model, run);
         all.into_iter().map(|g| g - self.value).collect()
     }
 }

@@ -1,12 +1,13 @@
 //! Smooth functions beside what they stand for: maxima over time, largest stresses of points, the best release.
 
-use super::evaluate::{Evaluated, release_weights, sample_with, turn};
+use super::evaluate::{Evaluated, release_weights};
 use super::flight::Flight;
 use super::function::{Function, Reduction, Release};
 use super::instant::Instant;
 use super::peak::{self, Maximum};
+use super::quantity::Quantity;
+use super::samples::{sample_with, turn};
 use super::snapshot::Snapshot;
-use super::turning::turns;
 use crate::integrate::Trajectory;
 use crate::math::soft_max::{Smoothed, ZERO, smoothed};
 use crate::model::Model;
@@ -23,20 +24,28 @@ pub fn of_motion(
         return None;
     }
     let (value, scale) = match (found.maximum, function) {
-        (Some(Maximum { value, .. }), Function::Reduced { instant, .. })
+        (Some(Maximum { value, .. }), Function::Reduced { of, .. })
             if value.abs() < ZERO * found.value.abs() =>
         {
-            (value, size(instant, model, run))
+            (value, size(of, model, run))
         }
         (Some(maximum), _) => (maximum.value, maximum.value.abs()),
         (None, Function::Clearance { top, .. }) => {
             let value = best_clearance(function, model, run)?;
             (value, value.abs().max(top.abs()))
         }
-        (None, Function::Reduced { instant, reduction }) => {
+        (
+            None,
+            Function::Reduced {
+                of: Quantity::Of(instant),
+                during: None,
+                reduction,
+            },
+        ) => {
             let value = of_largest(instant, *reduction, model, run);
             (value, value.abs())
         }
+        (None, Function::Reduced { .. }) => return None,
         (None, Function::Duration | Function::OfDesign { .. }) => return None,
     };
     let with = |factor: f64| sharpened(function, factor).evaluate(model, run).value;
@@ -46,11 +55,11 @@ pub fn of_motion(
 /// The parameters ρ of a function: that over time, then that over points.
 fn rhos(function: &Function<f64>) -> Vec<f64> {
     let (over_time, instant) = match function {
-        Function::Reduced { instant, reduction } => match reduction {
+        Function::Reduced { of, reduction, .. } => match reduction {
             Reduction::Ks { rho, .. } | Reduction::InducedExponential { rho } => {
-                (Some(*rho), Some(instant))
+                (Some(*rho), of.instant())
             }
-            Reduction::Final | Reduction::Integral => (None, Some(instant)),
+            Reduction::Final | Reduction::Integral | Reduction::Mean => (None, of.instant()),
         },
         Function::Clearance { release, .. } => match release {
             Release::Best { rho, .. } => (Some(*rho), None),
@@ -70,14 +79,14 @@ fn rhos(function: &Function<f64>) -> Vec<f64> {
 fn sharpened(function: &Function<f64>, factor: f64) -> Function<f64> {
     let mut out = function.clone();
     match &mut out {
-        Function::Reduced { instant, reduction } => {
+        Function::Reduced { of, reduction, .. } => {
             match reduction {
                 Reduction::Ks { rho, .. } | Reduction::InducedExponential { rho } => *rho *= factor,
-                Reduction::Final | Reduction::Integral => {}
+                Reduction::Final | Reduction::Integral | Reduction::Mean => {}
             }
-            match instant {
-                Instant::ShellStress { rho, .. } => *rho *= factor,
-                Instant::LargestDeformation { largest, .. } => largest.rho *= factor,
+            match of {
+                Quantity::Of(Instant::ShellStress { rho, .. }) => *rho *= factor,
+                Quantity::Of(Instant::LargestDeformation { largest, .. }) => largest.rho *= factor,
                 _ => {}
             }
         }
@@ -91,11 +100,9 @@ fn sharpened(function: &Function<f64>, factor: f64) -> Function<f64> {
 }
 
 /// The largest absolute value of a quantity.
-fn size(instant: &Instant<f64>, model: &Model<f64>, run: &Trajectory<f64>) -> f64 {
-    let turns = turns(instant.watched_rotation(), run);
-    let value = |at: &Snapshot<f64>, turns| instant.value_and_largest(at, turns).1.abs();
-    let values = sample_with(instant, &turns, (model, run), 0..=run.last(), value);
-    values.into_iter().fold(0.0, f64::max)
+fn size(of: &Quantity<f64>, model: &Model<f64>, run: &Trajectory<f64>) -> f64 {
+    let values = of.values_and_largest(model, run).1;
+    values.into_iter().map(f64::abs).fold(0.0, f64::max)
 }
 
 /// The value at the end or the integral, with the largest value of all points at each instant.
@@ -105,19 +112,21 @@ fn of_largest(
     model: &Model<f64>,
     run: &Trajectory<f64>,
 ) -> f64 {
-    let turns = turns(instant.watched_rotation(), run);
     let last = run.last();
     let instants = match reduction {
-        Reduction::Integral => 0..=last,
+        Reduction::Integral | Reduction::Mean => 0..=last,
         _ => last..=last,
     };
     let largest = |at: &Snapshot<f64>, turns| instant.value_and_largest(at, turns).1;
-    let values = sample_with(instant, &turns, (model, run), instants, largest);
+    let values = sample_with(instant, (model, run), instants, largest);
     match reduction {
-        Reduction::Integral => {
+        Reduction::Integral | Reduction::Mean => {
             let weighted = values.iter().enumerate();
             let mean: f64 = weighted.map(|(k, x)| x * run.quadrature_weight(k)).sum();
-            mean * run.time(last)
+            match reduction {
+                Reduction::Mean => mean,
+                _ => mean * run.time(last),
+            }
         }
         _ => values[0],
     }

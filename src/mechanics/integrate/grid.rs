@@ -186,7 +186,8 @@ impl Grid {
     }
 
     /// Fraction of the last kink: until then the steps have fixed times.
-    fn fixed(&self) -> f64 {
+    /// The fraction of the last kink; zero without.
+    pub fn fixed(&self) -> f64 {
         self.kinks.last().copied().unwrap_or(0.0)
     }
 

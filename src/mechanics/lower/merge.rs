@@ -12,7 +12,8 @@
 //! copies of the host without mass and unknowns, so the numbers of the bodies do not change. Their
 //! motion follows from that of the host after a run.
 
-use crate::functions::{Function, Instant, Scene};
+use crate::functions::seen::Seen;
+use crate::functions::{Instant, Scene};
 use crate::integrate::Trajectory;
 use crate::math::rotation::{self, Quat};
 use crate::math::{Mat3, Scalar, Vec3};
@@ -130,13 +131,13 @@ pub(super) fn merge<S: Scalar>(scene: &mut Scene<S>, clusters: &[Cluster], welds
     }
     let event = scene.until.as_mut().map(|until| &mut until.measure);
     for function in scene.functions.iter_mut().chain(event) {
-        if let Function::Reduced {
-            instant: Instant::Reaction(wrench),
-            ..
-        } = function
-            && let (Axes::Body, Some(pose)) = (wrench.axes, &written[wrench.joint])
-        {
-            wrench.direction = pose.turn * wrench.direction;
+        for wrench in function.reactions_mut() {
+            if let (Axes::Body, Some(pose)) = (wrench.axes, &written[wrench.joint]) {
+                wrench.direction = pose.turn * wrench.direction;
+            }
+        }
+        for instant in function.instants_mut() {
+            turn_direction(instant, &on_host);
         }
         function.for_each_place(&mut |body, point| {
             if let Some(pose) = &on_host[*body] {
@@ -146,6 +147,24 @@ pub(super) fn merge<S: Scalar>(scene: &mut Scene<S>, clusters: &[Cluster], welds
                 }
             }
         });
+    }
+}
+
+/// Turns a direction in the axes of a body to those of its host.
+fn turn_direction<S: Scalar>(instant: &mut Instant<S>, on_host: &[Option<Pose<S>>]) {
+    let (body, direction) = match instant {
+        Instant::Felt {
+            body, direction, ..
+        } => (*body, direction),
+        Instant::Seen(Seen {
+            from: Some(body),
+            direction,
+            ..
+        }) => (*body, direction),
+        _ => return,
+    };
+    if let Some(pose) = &on_host[body] {
+        *direction = pose.turn * *direction;
     }
 }
 

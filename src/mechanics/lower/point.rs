@@ -124,35 +124,54 @@ fn looks_at<S: Scalar>(scene: &Scene<S>, function: &Function<S>) -> Vec<(usize, 
             .flat_map(|gate| turned(&gate.rotation))
             .collect::<Vec<_>>()
     };
+    let of_instant = |instant: &Instant<S>| match instant {
+        Instant::Position { body, point, .. }
+        | Instant::Velocity { body, point, .. }
+        | Instant::Acceleration { body, point, .. }
+        | Instant::Speed { body, point }
+        | Instant::SpeedSquared { body, point } => vec![(*body, Some(*point))],
+        // The energy depends on angular velocities, which are zero, and on heights of centres.
+        Instant::Energy(_) => Vec::new(),
+        Instant::Momentum { .. }
+        | Instant::StrainEnergy(_)
+        | Instant::ShellStress { .. }
+        | Instant::Deformation { .. }
+        | Instant::LargestDeformation { .. } => Vec::new(),
+        // Loads turn only bodies that are no points. Angular velocities are zero, but the angular
+        // momentum of a centre is not, whatever its body's rotation.
+        Instant::AngularMomentum(_) | Instant::Spring(_) | Instant::Power(_) => Vec::new(),
+        Instant::Reaction(wrench) => {
+            let all = reactions::turning(scene, wrench).into_iter();
+            all.map(|body| (body, None)).collect()
+        }
+        Instant::Slide(joint) => vec![(scene.model.joints[*joint].body_a, None)],
+        Instant::JointRate { joint, .. } => {
+            let joint = &scene.model.joints[*joint];
+            let ends = [Some(joint.body_a), joint.body_b];
+            let ends = ends.into_iter().flatten();
+            ends.map(|body| (body, None)).collect()
+        }
+        Instant::Felt { body, point, .. } => vec![(*body, Some(*point)), (*body, None)],
+        Instant::Seen(seen) => {
+            let from = seen.from.into_iter();
+            let from = from.flat_map(|body| [(body, Some(seen.eye)), (body, None)]);
+            [(seen.body, Some(seen.point))]
+                .into_iter()
+                .chain(from)
+                .collect()
+        }
+        Instant::AngularVelocity { body, .. } => vec![(*body, None)],
+        Instant::Rotation(rotation) => turned(rotation).collect(),
+        Instant::Range { projectile, gate } => {
+            let thrown = (projectile.body, Some(projectile.point));
+            [thrown].into_iter().chain(gated(gate)).collect()
+        }
+    };
     match function {
-        Function::Reduced { instant, .. } => match instant {
-            Instant::Position { body, point, .. }
-            | Instant::Velocity { body, point, .. }
-            | Instant::Acceleration { body, point, .. }
-            | Instant::Speed { body, point }
-            | Instant::SpeedSquared { body, point } => vec![(*body, Some(*point))],
-            // The energy depends on angular velocities, which are zero, and on heights of centres.
-            Instant::Energy(_) => Vec::new(),
-            Instant::Momentum { .. }
-            | Instant::StrainEnergy(_)
-            | Instant::ShellStress { .. }
-            | Instant::Deformation { .. }
-            | Instant::LargestDeformation { .. } => Vec::new(),
-            // Loads turn only bodies that are no points. Angular velocities are zero, but the angular
-            // momentum of a centre is not, whatever its body's rotation.
-            Instant::AngularMomentum(_) | Instant::Spring(_) => Vec::new(),
-            Instant::Reaction(wrench) => {
-                let all = reactions::turning(scene, wrench).into_iter();
-                all.map(|body| (body, None)).collect()
-            }
-            Instant::Slide(joint) => vec![(scene.model.joints[*joint].body_a, None)],
-            Instant::AngularVelocity { body, .. } => vec![(*body, None)],
-            Instant::Rotation(rotation) => turned(rotation).collect(),
-            Instant::Range { projectile, gate } => {
-                let thrown = (projectile.body, Some(projectile.point));
-                [thrown].into_iter().chain(gated(gate)).collect()
-            }
-        },
+        Function::Reduced { .. } => {
+            let all = function.instants().into_iter();
+            all.flat_map(of_instant).collect()
+        }
         Function::Duration | Function::OfDesign { .. } => Vec::new(),
         Function::Clearance {
             projectile,

@@ -12,7 +12,7 @@ use crate::system::redundancy;
 pub(super) fn observed<S: Scalar>(scene: &Scene<S>) -> impl Iterator<Item = &Wrench<S>> {
     let event = scene.until.iter().map(|until| &until.measure);
     let all = scene.functions.iter().chain(event);
-    all.filter_map(|function| function.reaction())
+    all.flat_map(|function| function.reactions())
 }
 
 /// The bodies whose rotation turns the direction of the reaction, or the moment.
@@ -77,7 +77,7 @@ pub(super) fn turn_into_plane<S: Scalar>(scene: &mut Scene<S>, normal: &Vec3<f64
     let model = &scene.model;
     let event = scene.until.iter_mut().map(|until| &mut until.measure);
     let all = scene.functions.iter_mut().chain(event);
-    for wrench in all.filter_map(|function| function.reaction_mut()) {
+    for wrench in all.flat_map(|function| function.reactions_mut()) {
         if wrench.part == WrenchPart::Force {
             let normal = normal_of(model, wrench, normal);
             wrench.direction -= normal * normal.dot(&wrench.direction);

@@ -53,24 +53,25 @@ impl Seen {
         let mut seen = vec![false; model.bodies.len()];
         let event = scene.until.iter().map(|until| &until.measure);
         for function in functions.iter().map(|&f| &scene.functions[f]).chain(event) {
-            if let Function::Reduced {
-                instant: Instant::Energy(_) | Instant::Momentum { .. } | Instant::AngularMomentum(_),
-                ..
-            } = function
-            {
+            let of_all = |instant: &&Instant<S>| {
+                matches!(
+                    instant,
+                    Instant::Energy(_) | Instant::Momentum { .. } | Instant::AngularMomentum(_)
+                )
+            };
+            if function.instants().iter().any(of_all) {
                 seen.fill(true);
             }
             let mut function = function.clone();
             function.for_each_place(&mut |body, _| seen[*body] = true);
-            let observed = match function.part() {
-                Some(Part::Joint(&mut joint)) => {
+            let observed = function.parts().into_iter().flat_map(|part| match part {
+                Part::Joint(&mut joint) => {
                     let joint = &model.joints[joint];
                     [Some(joint.body_a), joint.body_b]
                 }
-                Some(Part::Load(&mut load)) => ends(&model.loads[load], model),
-                None => [None, None],
-            };
-            for body in observed.into_iter().flatten() {
+                Part::Load(&mut load) => ends(&model.loads[load], model),
+            });
+            for body in observed.flatten() {
                 seen[body] = true;
             }
         }
@@ -130,12 +131,13 @@ impl Seen {
         let [joints, loads] = leave_out(&mut scene.model, &number);
         let event = scene.until.as_mut().map(|until| &mut until.measure);
         for function in scene.functions.iter_mut().chain(event) {
-            let (own, new) = match function.part() {
-                Some(Part::Joint(joint)) => (joint, &joints),
-                Some(Part::Load(load)) => (load, &loads),
-                None => continue,
-            };
-            *own = new[*own].expect("a part that a function observes is kept");
+            for part in function.parts() {
+                let (own, new) = match part {
+                    Part::Joint(joint) => (joint, &joints),
+                    Part::Load(load) => (load, &loads),
+                };
+                *own = new[*own].expect("a part that a function observes is kept");
+            }
         }
     }
 

@@ -124,6 +124,10 @@ impl Checker<'_> {
             | Function::InducedExponential(_)
             | Function::Integral(_)
             | Function::Final(_)
+            | Function::Mean(_)
+            | Function::MeanSquare(_)
+            | Function::MeanAbsolute(_)
+            | Function::Value(_)
             | Function::Clearance(_)
             | Function::Duration => {
                 let expected = "a function of structures, such as \"mass\", or a \"simulation\"";

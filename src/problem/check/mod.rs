@@ -12,6 +12,7 @@ mod sections;
 mod sets;
 mod structures;
 mod study;
+mod windows;
 
 use super::finding::Finding;
 use super::placement::{GROUND, split_location};

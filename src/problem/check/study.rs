@@ -161,16 +161,10 @@ impl Checker<'_> {
             return;
         };
         match function {
-            OfMotion::Ks(aggregate) => self.instant(&format!("{pointer}/ks/of"), &aggregate.of),
-            OfMotion::InducedExponential(aggregate) => {
-                self.instant(&format!("{pointer}/induced_exponential/of"), &aggregate.of);
-            }
-            OfMotion::Integral(instant) => self.instant(&join(pointer, "integral"), instant),
-            OfMotion::Final(instant) => self.instant(&join(pointer, "final"), instant),
             OfMotion::Clearance(clearance) => {
                 self.clearance(&format!("{pointer}/clearance"), clearance);
             }
-            OfMotion::Duration | OfMotion::Mass => {}
+            function => self.reduction(pointer, &function),
         }
     }
 
@@ -192,7 +186,10 @@ impl Checker<'_> {
         self.fault(Finding::new(pointer, format!("\"{name}\""), expected).hint(hint));
     }
 
-    fn instant(&mut self, pointer: &str, instant: &Instant) {
+    pub(super) fn instant(&mut self, pointer: &str, instant: &Instant) {
+        if self.combination(pointer, instant) {
+            return;
+        }
         match instant {
             Instant::Position(component) => self.component(&join(pointer, "position"), component),
             Instant::Velocity(component) => self.component(&join(pointer, "velocity"), component),
@@ -274,11 +271,26 @@ impl Checker<'_> {
                 self.has_stress(&pointer, &of.body);
                 self.fibres(&join(&pointer, "fibres"), of.fibres.as_deref());
             }
+            Instant::Jerk(_)
+            | Instant::SensorAcceleration(_)
+            | Instant::RelativePosition(_)
+            | Instant::RelativeVelocity(_)
+            | Instant::Distance(_)
+            | Instant::Power(_)
+            | Instant::AngleRate(_)
+            | Instant::SlideRate(_)
+            | Instant::Sum(_)
+            | Instant::Difference(_)
+            | Instant::Product(_)
+            | Instant::Quotient(_)
+            | Instant::Square(_)
+            | Instant::Absolute(_)
+            | Instant::Rate(_) => unreachable!("combinations are checked before"),
         }
     }
 
     /// Checks the joint at `pointer` whose angle is measured.
-    fn angle(&mut self, pointer: &str, joint: &str) {
+    pub(super) fn angle(&mut self, pointer: &str, joint: &str) {
         use JointKind::{Cylindrical, Planar, Revolute};
         self.loaded_joint(pointer, joint, &[Revolute, Planar, Cylindrical]);
     }
@@ -297,7 +309,7 @@ impl Checker<'_> {
         }
     }
 
-    fn component(&mut self, pointer: &str, component: &Component) {
+    pub(super) fn component(&mut self, pointer: &str, component: &Component) {
         self.moving(pointer, &component.body, &component.point);
         self.direction(&join(pointer, "direction"), &component.direction);
     }

@@ -104,6 +104,10 @@ fn of(document: &Document, function: &Written, cuts: usize) -> Asked {
         | Written::InducedExponential(_)
         | Written::Integral(_)
         | Written::Final(_)
+        | Written::Mean(_)
+        | Written::MeanSquare(_)
+        | Written::MeanAbsolute(_)
+        | Written::Value(_)
         | Written::Clearance(_)
         | Written::Duration => unreachable!("functions of a motion are refused before"),
     })

@@ -10,6 +10,7 @@ mod parameters;
 mod power;
 mod pull;
 pub mod springs;
+pub mod work;
 
 use super::bodies::{BodyMotion, add6, velocities_of};
 use super::in_motion::InMotion;

@@ -98,7 +98,7 @@ pub(super) fn give_to_parameters(
     }
 }
 
-fn give_to_joint(model: &mut Model<f64>, joint: usize, pulled: &Pulled<f64>) {
+pub(super) fn give_to_joint(model: &mut Model<f64>, joint: usize, pulled: &Pulled<f64>) {
     let joint = &mut model.joints[joint];
     let add = |own: &mut JointFrame<f64>, by: &JointFrame<f64>| {
         own.point += by.point;

@@ -379,7 +379,7 @@ fn pull_along<S: Scalar>(
     }
 }
 
-fn pull_slide<S: Scalar>(at: &Acting<S>, rate: S, out: &mut Pulled<S>) {
+pub(super) fn pull_slide<S: Scalar>(at: &Acting<S>, rate: S, out: &mut Pulled<S>) {
     let cot = RowCotangent {
         value: S::zero(),
         rate,

@@ -1,0 +1,133 @@
+//! Windows of time, and reductions over them, in a file.
+
+use super::functions::Instant;
+use crate::quantity::Quantity;
+use schemars::JsonSchema;
+use serde::Deserialize;
+
+/// A quantity, over the whole run or a window of time: the quantity alone, or with `during`.
+#[derive(Clone, Debug, Deserialize, JsonSchema)]
+#[serde(untagged)]
+pub enum Over {
+    /// With a window.
+    Within(Within),
+    /// Over the whole run.
+    Whole(Instant),
+}
+
+/// A quantity and a window of time.
+#[derive(Clone, Debug, Deserialize, JsonSchema)]
+#[serde(deny_unknown_fields)]
+pub struct Within {
+    /// The quantity.
+    pub of: Instant,
+    /// The window, default the whole run.
+    pub during: Option<During>,
+}
+
+impl Over {
+    /// The quantity.
+    pub fn of(&self) -> &Instant {
+        match self {
+            Self::Within(within) => &within.of,
+            Self::Whole(instant) => instant,
+        }
+    }
+
+    /// The window, if there is one.
+    pub fn during(&self) -> Option<&During> {
+        match self {
+            Self::Within(within) => within.during.as_ref(),
+            Self::Whole(_) => None,
+        }
+    }
+}
+
+/// A smooth mean of absolute values.
+#[derive(Clone, Debug, Deserialize, JsonSchema)]
+#[serde(deny_unknown_fields)]
+pub struct MeanAbsolute {
+    /// Width w of the rounded corner at zero: √(x² + w²) − w instead of |x|, at most w below it.
+    #[schemars(extend(
+        "unit" = "unit of the quantity",
+        "exclusiveMinimum" = 0,
+        "design_variable" = "a width says what is asked, not what is built"
+    ))]
+    pub width: f64,
+    /// The quantity.
+    pub of: Instant,
+    /// The window, default the whole run.
+    pub during: Option<During>,
+}
+
+/// A quantity at a time.
+#[derive(Clone, Debug, Deserialize, JsonSchema)]
+#[serde(deny_unknown_fields)]
+pub struct ValueAt {
+    /// The time, or the first time at which a quantity reaches a value.
+    pub at: Edge,
+    /// The quantity.
+    pub of: Instant,
+}
+
+/// A window of time: `[start, end]`, or `{"from": …, "to": …}`.
+#[derive(Clone, Debug, Deserialize, JsonSchema)]
+#[serde(untagged)]
+pub enum During {
+    /// Start and end.
+    Times(#[schemars(extend("unit" = "s"))] [Quantity; 2]),
+    /// Each end by itself.
+    Between(Between),
+}
+
+/// The ends of a window.
+#[derive(Clone, Debug, Deserialize, JsonSchema)]
+#[serde(deny_unknown_fields)]
+pub struct Between {
+    /// Its start, default the start of the motion.
+    pub from: Option<Edge>,
+    /// Its end, default the end of the motion.
+    pub to: Option<Edge>,
+}
+
+/// A time, or the first time at which a quantity reaches a value.
+#[derive(Clone, Debug, Deserialize, JsonSchema)]
+#[serde(untagged)]
+pub enum Edge {
+    /// A time.
+    Time(#[schemars(extend("unit" = "s"))] Quantity),
+    /// The first time at which a quantity reaches a value.
+    When(Reach),
+}
+
+/// A quantity reaches a value: give one of `reaches`, `rises_to` and `falls_to`.
+#[derive(Clone, Debug, Deserialize, JsonSchema)]
+#[serde(deny_unknown_fields)]
+pub struct Reach {
+    /// The quantity.
+    pub when: Instant,
+    /// The value, which the quantity must cross upwards or downwards.
+    #[schemars(extend("unit" = "that of the quantity"))]
+    pub reaches: Option<Quantity>,
+    /// The value, which the quantity must cross upwards.
+    #[schemars(extend("unit" = "that of the quantity"))]
+    pub rises_to: Option<Quantity>,
+    /// The value, which the quantity must cross downwards.
+    #[schemars(extend("unit" = "that of the quantity"))]
+    pub falls_to: Option<Quantity>,
+}
+
+impl Reach {
+    /// The values that are given, each with the direction of the crossing.
+    pub fn values(&self) -> Vec<(Quantity, Option<bool>)> {
+        let all = [
+            (self.reaches, None),
+            (self.rises_to, Some(true)),
+            (self.falls_to, Some(false)),
+        ];
+        let given = all.into_iter();
+        given
+            .filter_map(|(value, rises)| Some((value?, rises)))
+            .collect()
+    }
+}

@@ -1,0 +1,98 @@
+//! Powers of loads and rates of joints for functions, with their derivatives.
+
+use super::parameters::{give_to_joint, give_to_parameters};
+use super::power::{SLIDE, forces, turn_rate};
+use super::pull::{Pulled, pull, pull_slide, pull_turn};
+use super::{Acting, for_each_load, give_to_states};
+use crate::math::{Scalar, Vec3};
+use crate::model::DegreeOfFreedom;
+use crate::system::bodies::{BodyMotion, add6};
+use crate::system::in_motion::InMotion;
+use crate::system::joints::JointCotangent;
+use crate::system::{constraint, side::JointSide};
+
+/// Velocities of both bodies of a load, linear in ground axes and angular in body axes.
+fn velocities<S: Scalar>(at: &Acting<S>) -> [(Vec3<S>, Vec3<S>); 2] {
+    [at.a.motion, at.b.motion].map(|motion| (motion.velocity, motion.omega))
+}
+
+/// The power \[W\] by which a load drives its bodies: Σ (Fᵀ ṙ + Mᵀ ω). Positive if it gives energy to them. Not that of
+/// loads that are spread over elements.
+pub fn power<S: Scalar>(here: &InMotion<S>, load: usize) -> S {
+    let mut found = S::zero();
+    for_each_load(here.model, here.motions, |i, kind, at| {
+        if i == load {
+            let pairs = forces(kind, at, here.time).into_iter().zip(velocities(at));
+            found = pairs.fold(S::zero(), |sum, ((force, torque), (velocity, omega))| {
+                sum + force.dot(&velocity) + torque.dot(&omega)
+            });
+        }
+    });
+    found
+}
+
+/// Adds `weight` times the derivative of [`power`] to states and parameters. Returns the derivative in time.
+pub fn pull_power(here: &InMotion<f64>, load: usize, weight: f64, out: &mut JointCotangent) -> f64 {
+    let mut by_time = 0.0;
+    for_each_load(here.model, here.motions, |i, kind, at| {
+        if i != load {
+            return;
+        }
+        // The power is linear in the velocities that the forces are weighed with.
+        let weighed = velocities(at).map(|(velocity, omega)| (velocity * weight, omega * weight));
+        let pulled = pull(kind, at, here.time, &weighed);
+        give_to_states(&pulled, at, here.numbering, (&mut out.y, &mut out.v));
+        give_to_parameters(kind, &pulled, (i, here.time), (out.model, &mut by_time));
+        let all = at.bodies.into_iter().zip(forces(kind, at, here.time));
+        for (body, (force, torque)) in all {
+            if let (Some(body), Some(v)) = (body, out.v.as_deref_mut()) {
+                let o = here.numbering.velocity(body);
+                add6(&mut v[o..], &(force * weight), &(torque * weight));
+            }
+        }
+    });
+    by_time
+}
+
+/// Calls `visit` with both bodies of a joint, without its drives.
+fn at_joint<S: Scalar, T>(
+    here: &InMotion<S>,
+    joint: usize,
+    visit: impl FnOnce(&Acting<S>) -> T,
+) -> T {
+    let ground = BodyMotion::ground();
+    let joint = &here.model.joints[joint];
+    let motion_b = joint.body_b.map_or(&ground, |body| &here.motions[body]);
+    visit(&Acting {
+        bodies: [Some(joint.body_a), joint.body_b],
+        a: JointSide::fixed(&here.motions[joint.body_a], joint.frame_a),
+        b: JointSide::fixed(motion_b, joint.frame_b),
+        counted: None,
+    })
+}
+
+/// The rate of body A against body B about or along the axis of a joint \[rad/s or m/s\].
+pub fn joint_rate<S: Scalar>(here: &InMotion<S>, (joint, dof): (usize, DegreeOfFreedom)) -> S {
+    at_joint(here, joint, |at| match dof {
+        DegreeOfFreedom::Rotation => turn_rate(at),
+        DegreeOfFreedom::Translation => constraint::rate(SLIDE, &at.a, &at.b),
+    })
+}
+
+/// Adds `weight` times the derivative of [`joint_rate`] to states and parameters.
+pub fn pull_joint_rate(
+    here: &InMotion<f64>,
+    (joint, dof): (usize, DegreeOfFreedom),
+    weight: f64,
+    out: &mut JointCotangent,
+) {
+    at_joint(here, joint, |at| {
+        let mut pulled = Pulled::zero();
+        match dof {
+            DegreeOfFreedom::Rotation => pull_turn(at, weight, &mut pulled),
+            DegreeOfFreedom::Translation => pull_slide(at, weight, &mut pulled),
+        }
+        give_to_states(&pulled, at, here.numbering, (&mut out.y, &mut out.v));
+        give_to_joint(out.model, joint, &pulled);
+    });
+}

@@ -1,0 +1,70 @@
+//! Units that only the scene of the first design shows: of sums, and of values that a quantity reaches.
+
+use super::Problem;
+use super::finding::Finding;
+use super::pointer::{join, keys};
+use super::variables::Variable;
+use crate::functions::{Edge, Function, Scene};
+
+/// The unit of a value of a quantity in the schema.
+const OF_QUANTITY: &str = "that of the quantity";
+
+/// Gives variables that are values of a quantity the unit of that quantity, also where a parameter gives the number.
+pub(super) fn name_units(variables: &mut [Variable], names: &[String], scene: &Scene<f64>) {
+    let values = variables.iter_mut();
+    for variable in values.filter(|variable| variable.unit == OF_QUANTITY) {
+        let of_function = variable.paths.iter().find_map(|path| {
+            let keys = keys(path);
+            let [section, name, .., end, _] = &keys[..] else {
+                return None;
+            };
+            let f = names.iter().position(|own| own == name)?;
+            let function = scene.functions.get(f).filter(|_| section == "functions")?;
+            reached(function, end)
+        });
+        let until = scene.until.as_ref().map(|until| until.measure.unit());
+        if let Some(unit) = of_function.or(until) {
+            variable.unit = unit;
+        }
+    }
+}
+
+/// The unit of the quantity whose value is an end of the function's window.
+fn reached(function: &Function<f64>, end: &str) -> Option<String> {
+    let Function::Reduced {
+        during: Some(window),
+        ..
+    } = function
+    else {
+        return None;
+    };
+    let edge = match end {
+        "from" => &window.from,
+        _ => &window.to,
+    };
+    edge.quantity().map(|quantity| quantity.unit())
+}
+
+/// The fault of a sum or difference of quantities of different units.
+pub(super) fn mismatched(problem: &Problem) -> Option<Finding> {
+    let scene = problem.unlowered_scene::<f64>(&problem.start());
+    let named = problem.function_names.iter().zip(&scene.functions);
+    let of_functions = named.filter_map(|(name, function)| {
+        let Function::Reduced { of, during, .. } = function else {
+            return None;
+        };
+        let edges = during.iter().flat_map(|own| [&own.from, &own.to]);
+        let mut all = std::iter::once(of).chain(edges.filter_map(Edge::quantity));
+        Some((
+            join("/functions", name),
+            all.find_map(|own| own.mismatch())?,
+        ))
+    });
+    let until = scene.until.iter().filter_map(|until| {
+        let units = until.measure.quantity()?.mismatch()?;
+        Some(("/simulation/until/measure".to_owned(), units))
+    });
+    let (pointer, [first, second]) = of_functions.chain(until).next()?;
+    let found = format!("a sum or difference of a quantity in {first} and one in {second}");
+    Some(Finding::new(pointer, found, "quantities of one unit"))
+}
