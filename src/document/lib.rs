@@ -19,7 +19,7 @@ pub mod structures;
 
 use drives::Drive;
 use flexbody_mechanics::system::equilibrium::KnownStarts;
-use functions::{Function, Instant};
+use functions::{Function, Instant, OfFunctions};
 use indexmap::IndexMap;
 use joints::Joint;
 use loads::Load;
@@ -294,10 +294,10 @@ pub struct Variable {
 #[derive(Clone, Debug, Deserialize, JsonSchema)]
 #[serde(rename_all = "snake_case", deny_unknown_fields)]
 pub enum Objective {
-    /// Name of the function to minimise.
-    Minimise(String),
-    /// Name of the function to maximise.
-    Maximise(String),
+    /// The function to minimise: its name, or an expression.
+    Minimise(OfFunctions),
+    /// The function to maximise: its name, or an expression.
+    Maximise(OfFunctions),
 }
 
 /// Bounds on a function. Equal bounds make an equality.
@@ -307,8 +307,8 @@ pub struct Constraint {
     /// Remark for readers of the file.
     #[serde(rename = "description")]
     pub _description: Option<String>,
-    /// Name of the function.
-    pub function: String,
+    /// The function: its name, or an expression.
+    pub function: OfFunctions,
     /// Smallest value, default none.
     #[schemars(extend("design_variable" = "a bound limits the design, it is no part of it"))]
     pub lower: Option<f64>,

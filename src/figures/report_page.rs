@@ -3,6 +3,7 @@
 use super::connectors::{Joined, joined};
 use super::detail::Detail;
 use super::elastic_figures::{SEEN, colours, deflections, keep_the_largest, stresses};
+use super::files::thrown_for;
 use super::flight::release;
 use super::forces::arrows;
 use super::shapes::{shape, thickness};
@@ -37,7 +38,7 @@ struct Shown<'a> {
     simulation: &'a Simulation,
     drawing: Drawing,
     stresses: Curves,
-    objective: Option<usize>,
+    objective: Option<Vec<usize>>,
 }
 
 impl<'a> Shown<'a> {
@@ -52,7 +53,7 @@ impl<'a> Shown<'a> {
                 &drawing,
             ),
             drawing,
-            objective: problem.stated_objective().map(|own| own.function),
+            objective: thrown_for(problem),
         }
     }
 }
@@ -177,6 +178,7 @@ fn curves(problem: &Problem, motions: &[Shown]) -> Vec<Chart> {
     if shown.is_empty() {
         shown = (0..problem.function_names.len()).collect();
     }
+    let mut shown = problem.composition.of_scene(&shown).into_owned();
     shown.sort_unstable();
     shown.dedup();
     for f in shown {
@@ -318,7 +320,7 @@ fn stage(shown: &Shown, notes: &mut Vec<String>) -> (Option<Stage>, Stage) {
         ));
     }
     let coloured = colours(model, drawing, std::slice::from_ref(stresses));
-    let release = release(simulation, drawing, *objective);
+    let release = release(simulation, drawing, objective.as_deref());
     if let Some(own) = release.as_ref().filter(|own| own.sample < run.last()) {
         notes.push(format!(
             "The {of}: the projectile is let go at t = {:.4} s. Its flight begins there; the machine is shown as if it kept it.",

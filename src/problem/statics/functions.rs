@@ -105,6 +105,9 @@ fn of(document: &Document, function: &Written, cuts: usize) -> Asked {
         | Written::Integral(_)
         | Written::Final(_)
         | Written::Clearance(_)
-        | Written::Duration => unreachable!("functions of a motion are refused before"),
+        | Written::Duration
+        | Written::Expression(_) => {
+            unreachable!("functions of a motion are refused before, and expressions are no functions of structures")
+        }
     })
 }
