@@ -59,17 +59,17 @@ pub enum Function {
 /// A function: its name, or an expression of functions.
 #[derive(Clone, Debug, Deserialize, JsonSchema)]
 #[serde(untagged)]
-pub enum OfFunctions {
+pub enum WhichFunction {
     /// Name of a function.
     Named(String),
     /// An expression in this place.
-    Written(WrittenHere),
+    Written(ExpressionOfFunctions),
 }
 
 /// An expression of functions.
 #[derive(Clone, Debug, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
-pub struct WrittenHere {
+pub struct ExpressionOfFunctions {
     /// Of functions and parameters by name, as that of a function.
     pub expression: String,
 }

@@ -19,7 +19,7 @@ pub mod structures;
 
 use drives::Drive;
 use flexbody_mechanics::system::equilibrium::KnownStarts;
-use functions::{Function, Instant, OfFunctions};
+use functions::{Function, Instant, WhichFunction};
 use indexmap::IndexMap;
 use joints::Joint;
 use loads::Load;
@@ -295,9 +295,9 @@ pub struct Variable {
 #[serde(rename_all = "snake_case", deny_unknown_fields)]
 pub enum Objective {
     /// The function to minimise: its name, or an expression.
-    Minimise(OfFunctions),
+    Minimise(WhichFunction),
     /// The function to maximise: its name, or an expression.
-    Maximise(OfFunctions),
+    Maximise(WhichFunction),
 }
 
 /// Bounds on a function. Equal bounds make an equality.
@@ -308,7 +308,7 @@ pub struct Constraint {
     #[serde(rename = "description")]
     pub _description: Option<String>,
     /// The function: its name, or an expression.
-    pub function: OfFunctions,
+    pub function: WhichFunction,
     /// Smallest value, default none.
     #[schemars(extend("design_variable" = "a bound limits the design, it is no part of it"))]
     pub lower: Option<f64>,

@@ -4,6 +4,7 @@ use super::bases;
 use super::evaluate::{Derivative, Evaluated};
 use super::integration::{Integration, looks_at_the_whole};
 use super::{memory, stretch};
+use crate::functions::Scene;
 use crate::integrate::implicit::cost::factor_cost;
 use crate::integrate::implicit::krylov::PRODUCTS_OF_FACTORS;
 use crate::integrate::{IntegrationFailure, LinearSolver, Method, Trajectory};
@@ -172,7 +173,8 @@ pub fn explain(problem: &Problem) -> Explanation {
     found.loads = model.loads.len();
     found.written = size(model, placement::guess(model));
     let mut known = found.functions;
-    let use_of = |(f, name): (usize, &String)| match known.iter().position(|own| own.name == *name) {
+    let use_of = |(f, name): (usize, &String)| match known.iter().position(|own| own.name == *name)
+    {
         Some(place) => known.swap_remove(place),
         None => FunctionUse {
             name: name.clone(),
@@ -280,14 +282,13 @@ fn names(problem: &Problem, which: impl Fn(usize) -> bool) -> Vec<String> {
     wanted.map(|(_, variable)| variable.name.clone()).collect()
 }
 
-/// The use of function f in an optimisation.
 /// Whether a function looks at the whole motion.
 fn sees_all(problem: &Problem, scene: &Scene<f64>, f: usize) -> bool {
     let own = problem.composition.of_scene(&[f]).into_owned();
     own.iter().any(|&g| looks_at_the_whole(&scene.functions[g]))
 }
 
-/// What uses a function.
+/// The use of function f in an optimisation.
 fn used(problem: &Problem, f: usize) -> Vec<&'static str> {
     let mut used = Vec::new();
     if problem

@@ -33,7 +33,11 @@ pub(super) fn of_constraints(problem: &Problem, designs: &[(&str, &Simulation)])
         .filter(|&f| designs.iter().all(|(_, own)| is_reduced(own, f)))
         .take(MOST)
         .collect();
-    let grows = |f: &usize| designs.iter().any(|(_, own)| is_integral(&own.written.functions[*f]));
+    let grows = |f: &usize| {
+        designs
+            .iter()
+            .any(|(_, own)| is_integral(&own.written.functions[*f]))
+    };
     let what = match nearest.iter().any(grows) {
         true => "quantity, or its integral up to this time",
         false => "quantity",
@@ -60,7 +64,8 @@ fn is_reduced(design: &Simulation, f: usize) -> bool {
     function.is_some_and(|own| own.instant().is_some())
 }
 
-fn is_integral(function: &Function<f64>) -> bool {
+/// Whether a function is an integral over the motion.
+pub(super) fn is_integral(function: &Function<f64>) -> bool {
     matches!(
         function,
         Function::Reduced {
@@ -110,7 +115,7 @@ fn panel(problem: &Problem, designs: &[(&str, &Simulation)], f: usize, what: &st
 }
 
 /// The integral up to each instant by the trapezoidal rule.
-fn growth(time: &[f64], values: &[f64]) -> Vec<f64> {
+pub(super) fn growth(time: &[f64], values: &[f64]) -> Vec<f64> {
     let mut sum = 0.0;
     let first = values.first().map(|_| 0.0);
     let rest = time.windows(2).zip(values.windows(2)).map(|(t, v)| {

@@ -99,7 +99,9 @@ fn figures(
     all.push(("energy.svg", energy(&energies)));
     let limited = of_constraints(problem, designs);
     if !limited.is_empty() {
-        let rows = limited.iter().map(|(label, curves)| (&label[..], curves.clone()));
+        let rows = limited
+            .iter()
+            .map(|(label, curves)| (&label[..], curves.clone()));
         all.push(("constraints.svg", histories(&rows.collect::<Vec<_>>())));
     }
     let deforms = |drawing: &Drawing| !drawing.elastic_points.is_empty();

@@ -1,6 +1,7 @@
 //! The page of a result: what moves, and the curves of its functions.
 
 use super::connectors::{Joined, joined};
+use super::constraints::{growth, is_integral};
 use super::detail::Detail;
 use super::elastic_figures::{SEEN, colours, deflections, keep_the_largest, stresses};
 use super::files::thrown_for;
@@ -182,11 +183,13 @@ fn curves(problem: &Problem, motions: &[Shown]) -> Vec<Chart> {
     shown.sort_unstable();
     shown.dedup();
     for f in shown {
+        let is_limited = problem.constraints.iter().any(|c| c.function == f);
         let of = |Shown {
                       title, simulation, ..
                   }: &Shown| {
             let (written, run) = (&simulation.written, simulation.motion());
-            let Function::Reduced { instant, .. } = written.functions.get(f)? else {
+            let function = written.functions.get(f)?;
+            let Function::Reduced { instant, .. } = function else {
                 return None;
             };
             let values = sample(
@@ -195,17 +198,29 @@ fn curves(problem: &Problem, motions: &[Shown]) -> Vec<Chart> {
                 &written.model,
                 run,
             );
-            let points = values.iter().enumerate().map(|(k, &v)| [run.time(k), v]);
-            Some((Curve::new(named(title, ""), points), instant.unit()))
+            let time: Vec<f64> = (0..values.len()).map(|k| run.time(k)).collect();
+            // A limit is one of the integral.
+            let grows = is_integral(function) && is_limited;
+            let (values, unit) = match grows {
+                true => (growth(&time, &values), function.unit()),
+                false => (values, instant.unit().to_owned()),
+            };
+            let points = time.iter().zip(values).map(|(&t, v)| [t, v]);
+            Some((Curve::new(named(title, ""), points), (grows, unit)))
         };
-        let found: Vec<(Curve, &str)> = motions.iter().filter_map(of).collect();
-        let Some(unit) = found.first().map(|(_, unit)| *unit) else {
+        let found: Vec<(Curve, (bool, String))> = motions.iter().filter_map(of).collect();
+        let Some((grows, unit)) = found.first().map(|own| own.1.clone()) else {
             continue;
         };
-        let unit = if unit.is_empty() { "1" } else { unit };
+        let unit = if unit.is_empty() { "1" } else { &unit };
         let curves = found.into_iter().map(|(curve, _)| curve).collect();
         let name = &problem.function_names[f];
-        let mut own = chart(name, &format!("at an instant [{unit}]"), curves);
+        let what = if grows {
+            "integral up to t"
+        } else {
+            "at an instant"
+        };
+        let mut own = chart(name, &format!("{what} [{unit}]"), curves);
         let limits = problem.constraints.iter().filter(|c| c.function == f);
         let sides = limits.flat_map(|c| [(&c.name, c.lower), (&c.name, c.upper)]);
         let finite = sides.filter(|(_, value)| value.is_finite());

@@ -156,7 +156,9 @@ impl Composition {
             self.follow(f, &seeded(&numbers, place), known).du
         };
         let by_function = functions.iter().enumerate();
-        let by_function = by_function.map(|(k, &g)| (g, along(Some(k), None))).collect();
+        let by_function = by_function
+            .map(|(k, &g)| (g, along(Some(k), None)))
+            .collect();
         let mut by_variable = vec![0.0; x.len()];
         let needed = self.needed(&[f]).into_iter().zip(&self.list);
         let terms = needed.filter(|(needed, _)| *needed);

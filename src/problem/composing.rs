@@ -8,7 +8,7 @@ use super::pointer::{advice, join};
 use super::prune::Damage;
 use super::source::Source;
 use super::unit::{Known, Unit, unit};
-use crate::schema::functions::{Function, OfFunctions};
+use crate::schema::functions::{Function, WhichFunction};
 use crate::schema::{Document, Objective};
 use indexmap::IndexMap;
 use serde_json::{Map, Value};
@@ -43,7 +43,7 @@ fn expression_of(function: &Function) -> Option<&String> {
 }
 
 /// References to functions, with their pointers.
-pub(super) fn references(document: &Document) -> Vec<(String, &OfFunctions)> {
+pub(super) fn references(document: &Document) -> Vec<(String, &WhichFunction)> {
     let objective = document.objective.as_ref().map(|own| match own {
         Objective::Minimise(of) => ("/objective/minimise".to_owned(), of),
         Objective::Maximise(of) => ("/objective/maximise".to_owned(), of),
@@ -64,8 +64,10 @@ fn texts(document: &Document) -> Vec<(Option<&String>, String, &String)> {
     let in_place = references(document)
         .into_iter()
         .filter_map(|(pointer, of)| match of {
-            OfFunctions::Named(_) => None,
-            OfFunctions::Written(own) => Some((None, join(&pointer, "expression"), &own.expression)),
+            WhichFunction::Named(_) => None,
+            WhichFunction::Written(own) => {
+                Some((None, join(&pointer, "expression"), &own.expression))
+            }
         });
     named.chain(in_place).collect()
 }
@@ -73,7 +75,7 @@ fn texts(document: &Document) -> Vec<(Option<&String>, String, &String)> {
 /// Whether the objective, a constraint or an expression names a function.
 pub(super) fn is_wanted(document: &Document, function: &str) -> bool {
     let mut own = references(document).into_iter();
-    let named = own.any(|(_, of)| matches!(of, OfFunctions::Named(name) if name == function));
+    let named = own.any(|(_, of)| matches!(of, WhichFunction::Named(name) if name == function));
     let names = |text: &String| {
         let parsed = Expression::parse_placed(without_mark(text));
         parsed.is_ok_and(|own| own.names().iter().any(|own| own.name == function))
@@ -87,7 +89,12 @@ fn without_mark(text: &str) -> &str {
 }
 
 /// A fault of bytes of an expression.
-fn fault_at(source: &Source, own: (&str, &str, usize), finding: Finding, at: [usize; 2]) -> Finding {
+fn fault_at(
+    source: &Source,
+    own: (&str, &str, usize),
+    finding: Finding,
+    at: [usize; 2],
+) -> Finding {
     let (pointer, text, skipped) = own;
     Finding {
         part: match place(source, pointer, (at[0], at[1]), text, skipped) {
@@ -176,10 +183,10 @@ impl Composing {
     }
 
     /// The name of the function that is meant.
-    pub fn name<'a>(&'a self, of: &'a OfFunctions) -> &'a str {
+    pub fn name<'a>(&'a self, of: &'a WhichFunction) -> &'a str {
         match of {
-            OfFunctions::Named(name) => name,
-            OfFunctions::Written(own) => {
+            WhichFunction::Named(name) => name,
+            WhichFunction::Written(own) => {
                 let text = without_mark(&own.expression).trim();
                 self.in_place.get(text).map_or(text, String::as_str)
             }
@@ -257,14 +264,21 @@ impl Composing {
         if !findings.is_empty() {
             return Err(findings);
         }
-        let text = |known: &Known| known.unit.as_ref().map_or_else(String::new, Unit::to_string);
+        let text = |known: &Known| {
+            known
+                .unit
+                .as_ref()
+                .map_or_else(String::new, Unit::to_string)
+        };
         Ok(known.values().map(text).collect())
     }
 }
 
 /// Removes the functions that expressions give.
 pub(super) fn strip(document: &mut Document) {
-    document.functions.retain(|_, function| expression_of(function).is_none());
+    document
+        .functions
+        .retain(|_, function| expression_of(function).is_none());
 }
 
 /// Why a name of an expression stands for nothing, or for nothing that is one number.
@@ -294,9 +308,9 @@ fn wrong_name(
             let parameters = parameters.into_iter().flat_map(Map::keys);
             let all = functions.chain(parameters.map(String::as_str));
             let hint = match &name[..] {
-                "mass" | "duration" => {
-                    Some(format!("\"functions\": {{\"{name}\": \"{name}\"}} gives it"))
-                }
+                "mass" | "duration" => Some(format!(
+                    "\"functions\": {{\"{name}\": \"{name}\"}} gives it"
+                )),
                 _ => advice(name, "functions and parameters", all),
             };
             let expected = "the name of a function or parameter, pi or deg";
@@ -330,7 +344,9 @@ fn in_order(mut waiting: Vec<Written>) -> (Vec<Written>, Option<Finding>) {
             let last = path[path.len() - 1];
             let names = last.expression.names();
             let next = names.iter().find(|name| open.contains(&name.name));
-            let next = waiting.iter().find(|own| next.is_some_and(|name| own.name == name.name));
+            let next = waiting
+                .iter()
+                .find(|own| next.is_some_and(|name| own.name == name.name));
             let Some(next) = next else { break 0 };
             if let Some(start) = path.iter().position(|own| own.name == next.name) {
                 break start;

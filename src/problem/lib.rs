@@ -289,7 +289,9 @@ impl Problem {
     /// If there is no such function.
     pub fn function_unit(&self, index: usize) -> String {
         if self.composition.gives(index) {
-            return self.composition.list[index - self.composition.first].unit.clone();
+            return self.composition.list[index - self.composition.first]
+                .unit
+                .clone();
         }
         match &self.statics {
             Some(statics) => statics.functions[index].unit().to_owned(),
@@ -300,10 +302,16 @@ impl Problem {
     /// SI units of the functions of the scene.
     fn units_of_scene(&self) -> Vec<String> {
         match &self.statics {
-            Some(statics) => (statics.functions.iter()).map(|own| own.unit().to_owned()).collect(),
+            Some(statics) => (statics.functions.iter())
+                .map(|own| own.unit().to_owned())
+                .collect(),
             None => {
                 let scene = self.unlowered_scene(&self.start());
-                scene.functions.iter().map(crate::functions::Function::unit).collect()
+                scene
+                    .functions
+                    .iter()
+                    .map(crate::functions::Function::unit)
+                    .collect()
             }
         }
     }

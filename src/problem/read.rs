@@ -31,7 +31,7 @@ use crate::lower::{self, Lowering};
 use crate::math::Dual;
 use crate::model::Model;
 use crate::optimiser::Method;
-use crate::schema::functions::OfFunctions;
+use crate::schema::functions::WhichFunction;
 use crate::schema::{self, Document};
 use crate::structures::quality::MeshFault;
 use crate::system::redundancy;
@@ -388,7 +388,11 @@ fn problem(
     let feasible = feasible && !written.constraints.is_empty() && !variables.is_empty();
     let nearest_to = feasible.then(|| {
         let mut name = NEAREST.to_owned();
-        while function_names.iter().chain(composing.names()).any(|own| *own == name) {
+        while function_names
+            .iter()
+            .chain(composing.names())
+            .any(|own| *own == name)
+        {
             name.push('\'');
         }
         function_names.push(name);
@@ -402,7 +406,7 @@ fn problem(
     let numbers: HashMap<&str, usize> = (function_names.iter().enumerate())
         .map(|(f, name)| (name.as_str(), f))
         .collect();
-    let function = |of: &OfFunctions| numbers[composing.name(of)];
+    let function = |of: &WhichFunction| numbers[composing.name(of)];
     let objective = written.objective.as_ref().map(|objective| {
         let (name, sense) = match objective {
             schema::Objective::Minimise(name) => (name, Sense::Minimise),

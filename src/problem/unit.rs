@@ -186,7 +186,11 @@ pub fn unit(
         Expression::Binary(operator, pair) => match operator {
             Operator::Plus | Operator::Minus => sum(expression, pair, of)?,
             Operator::Times | Operator::Over => {
-                let sign = if *operator == Operator::Times { 1.0 } else { -1.0 };
+                let sign = if *operator == Operator::Times {
+                    1.0
+                } else {
+                    -1.0
+                };
                 let (a, b) = (unit(&pair[0], of)?, unit(&pair[1], of)?);
                 Known {
                     exact: a.exact && b.exact,
@@ -238,7 +242,11 @@ fn sum(
         (true, false) => a,
         (false, true) => b,
         (false, false) => Known {
-            unit: a.unit.zip(b.unit).filter(|(a, b)| a.is_as(b)).map(|own| own.0),
+            unit: a
+                .unit
+                .zip(b.unit)
+                .filter(|(a, b)| a.is_as(b))
+                .map(|own| own.0),
             exact: false,
         },
     })
@@ -301,7 +309,9 @@ mod tests {
             panic!("{text}")
         };
         match unit(&expression, &of) {
-            Ok(known) => known.unit.map_or_else(|| "?".to_owned(), |unit| unit.to_string()),
+            Ok(known) => known
+                .unit
+                .map_or_else(|| "?".to_owned(), |unit| unit.to_string()),
             Err(fault) => format!("{}: {}", &text[fault.at.clone()], fault.found),
         }
     }
@@ -329,7 +339,10 @@ mod tests {
             ("log(mass/1)", "1"),
             ("ratio^p", "1"),
             ("mass + work", "mass + work: terms in kg and in J"),
-            ("2*(mass - time/ratio)", "mass - time/ratio: terms in kg and in s"),
+            (
+                "2*(mass - time/ratio)",
+                "mass - time/ratio: terms in kg and in s",
+            ),
             ("exp(work)", "work: an argument in J"),
             ("mass^p", "mass: an argument in kg"),
         ] {

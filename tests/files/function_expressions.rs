@@ -118,7 +118,10 @@ fn expressions_of_a_motion_are_exact() {
                 ("shape", by_shape),
             ] {
                 let error = (of(name, i) - expected).abs();
-                assert!(error <= 1e-12 * expected.abs().max(1e-3), "{name}: {error:e}");
+                assert!(
+                    error <= 1e-12 * expected.abs().max(1e-3),
+                    "{name}: {error:e}"
+                );
             }
         }
     }
@@ -271,13 +274,15 @@ fn expressions_of_structures_are_exact() {
         };
         let value = |name: &str| at.function(index(&own, name)).value;
         let soft = value("work") / value("stiff");
-        let expected =
-            2.0 * value("mass") * 1.0 + 3.0 * soft.sqrt() - value("strong").ln() / 4.0;
+        let expected = 2.0 * value("mass") * 1.0 + 3.0 * soft.sqrt() - value("strong").ln() / 4.0;
         assert!((value("worth") / expected - 1.0).abs() < 1e-14);
         assert!((value("1/soft") * soft - 1.0).abs() < 1e-15);
         for derivative in check(&own, &x).expect("solves") {
             let error = derivative.relative_difference();
-            assert!(error <= 1e-11 || derivative.is_round_off(), "{derivative:?}");
+            assert!(
+                error <= 1e-11 || derivative.is_round_off(),
+                "{derivative:?}"
+            );
         }
         assert_eq!(own.function_unit(index(&own, "soft")), "J/Hz");
         assert_eq!(own.function_unit(index(&own, "1/soft")), "Hz/J");
@@ -315,13 +320,19 @@ fn errors_are_propagated() {
         let [e, f, g] = [0, 1, 2].map(|k| found[k].value);
         let expected = (f.error / g.value).abs() + (f.value / g.value.powi(2) * g.error).abs();
         let off = (e.error - expected).abs();
-        assert!(off <= 1e-12 * expected && expected > 0.0, "{e:?} {expected}");
+        assert!(
+            off <= 1e-12 * expected && expected > 0.0,
+            "{e:?} {expected}"
+        );
         assert_eq!(e.value, f.value / g.value);
         assert_eq!(found[0].gradient.len(), 2);
         for (i, d) in found[0].gradient.iter().enumerate() {
             let [f1, g1] = [1, 2].map(|k| found[k].gradient[i]);
             let exact = f1.value / g.value - f.value * g1.value / g.value.powi(2);
-            assert!((d.value - exact).abs() <= 1e-12 * exact.abs().max(1e-12), "{d:?}");
+            assert!(
+                (d.value - exact).abs() <= 1e-12 * exact.abs().max(1e-12),
+                "{d:?}"
+            );
             assert!(d.error >= (f1.error / g.value).abs() && d.error.is_finite());
         }
     }
@@ -333,7 +344,10 @@ fn true_values_pass_through_expressions() {
     let functions = r#""square": {"expression": "peak^2 + time*0"},"#;
     let own = problem(&links(r#""tolerance": 1e-9"#, functions, ""));
     let at = Evaluated::new(&own, &own.start()).expect("runs");
-    let truth = at.smoothed(index(&own, "peak")).expect("an aggregate").value;
+    let truth = at
+        .smoothed(index(&own, "peak"))
+        .expect("an aggregate")
+        .value;
     let found = at.smoothed(index(&own, "square")).expect("of an aggregate");
     assert!((found.value - truth * truth).abs() <= 1e-14 * truth * truth);
 }
@@ -392,16 +406,56 @@ fn faults_have_their_place() {
     };
     let steps = r#""tolerance": 1e-9"#;
     for (expression, mark, expected) in [
-        ("2*mas + 1", "mas", "found the name \"mas\", expected the name of a function or parameter, pi or deg; did you mean \"mass\"?"),
-        ("2*'the beach'", "'the beach'", "did you mean \"the reach\"?"),
-        ("2*duration", "duration", "\"functions\": {\"duration\": \"duration\"} gives it"),
-        ("mass +", "", "found the end of the expression, expected a number, a name or '('"),
-        ("mass ? 2", "?", "found '?', expected an operator or the end"),
-        ("'mass + 2", "'mass + 2", "found a name after ' without an end"),
-        ("mean(mass)", "mean(mass)", "found the function \"mean\", expected sin"),
-        ("2 + mass - work", "mass - work", "found terms in kg and in J s, expected terms of one unit; a factor that is a number"),
-        ("exp(work)", "work", "found an argument in J s, expected an argument without unit"),
-        ("2*a", "", "found a circle: \"a\" names \"a\", expected functions that do not depend on themselves"),
+        (
+            "2*mas + 1",
+            "mas",
+            "found the name \"mas\", expected the name of a function or parameter, pi or deg; did you mean \"mass\"?",
+        ),
+        (
+            "2*'the beach'",
+            "'the beach'",
+            "did you mean \"the reach\"?",
+        ),
+        (
+            "2*duration",
+            "duration",
+            "\"functions\": {\"duration\": \"duration\"} gives it",
+        ),
+        (
+            "mass +",
+            "",
+            "found the end of the expression, expected a number, a name or '('",
+        ),
+        (
+            "mass ? 2",
+            "?",
+            "found '?', expected an operator or the end",
+        ),
+        (
+            "'mass + 2",
+            "'mass + 2",
+            "found a name after ' without an end",
+        ),
+        (
+            "mean(mass)",
+            "mean(mass)",
+            "found the function \"mean\", expected sin",
+        ),
+        (
+            "2 + mass - work",
+            "mass - work",
+            "found terms in kg and in J s, expected terms of one unit; a factor that is a number",
+        ),
+        (
+            "exp(work)",
+            "work",
+            "found an argument in J s, expected an argument without unit",
+        ),
+        (
+            "2*a",
+            "",
+            "found a circle: \"a\" names \"a\", expected functions that do not depend on themselves",
+        ),
     ] {
         let functions = format!("\"a\": {{\"expression\": \"{expression}\"}},");
         let found = told(&links(steps, &functions, ""));
@@ -411,7 +465,8 @@ fn faults_have_their_place() {
         let under: String = lines[1].chars().skip(at).collect();
         assert!(under.starts_with(mark), "{expression}:\n{found}");
     }
-    let circle = r#""a": {"expression": "b + 1"}, "b": {"expression": "c"}, "c": {"expression": "2*b"},"#;
+    let circle =
+        r#""a": {"expression": "b + 1"}, "b": {"expression": "c"}, "c": {"expression": "2*b"},"#;
     let found = told(&links(steps, circle, ""));
     assert!(
         found.contains("found a circle: \"b\" names \"c\" names \"b\""),
@@ -448,5 +503,7 @@ fn faults_have_their_place() {
     let several = PLATE
         .replace(r#""cases": ["push"]"#, r#""per": "thickness""#)
         .replace("\"statics\": {},", "");
-    assert!(told(&several).contains("found \"strong\", a stress for each thickness, expected a function of one value"));
+    assert!(told(&several).contains(
+        "found \"strong\", a stress for each thickness, expected a function of one value"
+    ));
 }

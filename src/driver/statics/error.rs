@@ -118,7 +118,10 @@ pub fn doubts(problem: &Problem, at: &StaticDesign, which: &[usize]) -> Option<S
         .map(|case| case.iter().any(at_point))
         .collect();
     let doubtful = |&&f: &&usize| {
-        let needed = at.composition.of_scene(std::slice::from_ref(&f)).into_owned();
+        let needed = at
+            .composition
+            .of_scene(std::slice::from_ref(&f))
+            .into_owned();
         let functions = needed.into_iter().map(|g| &at.statics.functions[g]);
         let mut cases = functions.flat_map(super::cases_of);
         cases.any(|&case| singular[case])

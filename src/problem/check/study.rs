@@ -12,7 +12,7 @@ use crate::quantities::released;
 use crate::quantity::values;
 use crate::scene::GRAVITY;
 use crate::schema::functions::{
-    Clearance, Component, Function, Gate, Instant, OfFunctions, OfMotion, Range,
+    Clearance, Component, Function, Gate, Instant, OfMotion, Range, WhichFunction,
 };
 use crate::schema::mechanics::Point;
 use crate::schema::{LinearSolver, Method};
@@ -34,7 +34,7 @@ impl Checker<'_> {
             }
         }
         for (pointer, of) in references(document) {
-            if let OfFunctions::Named(name) = of {
+            if let WhichFunction::Named(name) = of {
                 self.function_name(&pointer, name);
             }
         }

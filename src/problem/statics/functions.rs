@@ -107,7 +107,9 @@ fn of(document: &Document, function: &Written, cuts: usize) -> Asked {
         | Written::Clearance(_)
         | Written::Duration
         | Written::Expression(_) => {
-            unreachable!("functions of a motion are refused before, and expressions are no functions of structures")
+            unreachable!(
+                "functions of a motion are refused before, and expressions are no functions of structures"
+            )
         }
     })
 }
