@@ -29,7 +29,7 @@ fn links(simulation: &str, functions: &str, study: &str) -> String {
     "work": {{"integral": {{"energy": "kinetic"}}}},
     "mass": "mass",
     "time": "duration",
-    "peak": {{"ks": {{"rho": 20, "of": {{"velocity": {{"body": "lower", "direction": [0, 1, 0]}}}}}}}}
+    "peak": {{"ks": {{"rho": 20, "of": {{"velocity": {{"body": "lower", "direction": [0, -1, 0]}}}}}}}}
   }},
   "variables": {{"length": {{"path": "/parameters/L", "lower": 0.3, "upper": 2}}, "rho": {{"path": "/parameters/rho", "lower": 1, "upper": 9}}}}{study}
 }}"#
