@@ -139,8 +139,7 @@ fn as_json(
         .flatten();
     for (f, name) in names.iter().enumerate() {
         let found = simulation.at.function(f);
-        let mut own =
-            json!({"value": found.value, "unit": simulation.at.scene.functions[f].unit()});
+        let mut own = json!({"value": found.value, "unit": problem.function_unit(f)});
         if let Some(Maximum { value, time, error }) = found.maximum {
             own["true_maximum"] = json!({"value": value, "time": time, "error": error});
         }

@@ -61,6 +61,27 @@ pub enum Function {
     Frequency(Frequency),
     /// Smooth lower bound of the natural frequencies \[Hz\].
     LowestFrequency(LowestFrequency),
+    /// An expression of other functions and of parameters, such as `2*mass + work/duration`. Names that are no words
+    /// stand between single quotes or backquotes.
+    Expression(String),
+}
+
+/// A function: its name, or an expression of functions.
+#[derive(Clone, Debug, Deserialize, JsonSchema)]
+#[serde(untagged)]
+pub enum WhichFunction {
+    /// Name of a function.
+    Named(String),
+    /// An expression in this place.
+    Written(ExpressionOfFunctions),
+}
+
+/// An expression of functions.
+#[derive(Clone, Debug, Deserialize, JsonSchema)]
+#[serde(deny_unknown_fields)]
+pub struct ExpressionOfFunctions {
+    /// Of functions and parameters by name, as that of a function.
+    pub expression: String,
 }
 
 /// A function of a motion.
@@ -110,7 +131,8 @@ impl Function {
             | Self::ReactionMoment(_)
             | Self::VonMises(_)
             | Self::Frequency(_)
-            | Self::LowestFrequency(_) => None,
+            | Self::LowestFrequency(_)
+            | Self::Expression(_) => None,
         }
     }
 }

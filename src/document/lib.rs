@@ -21,7 +21,7 @@ pub mod windows;
 
 use drives::Drive;
 use flexbody_mechanics::system::equilibrium::KnownStarts;
-use functions::{Function, Instant};
+use functions::{Function, Instant, WhichFunction};
 use indexmap::IndexMap;
 use joints::Joint;
 use loads::Load;
@@ -296,10 +296,10 @@ pub struct Variable {
 #[derive(Clone, Debug, Deserialize, JsonSchema)]
 #[serde(rename_all = "snake_case", deny_unknown_fields)]
 pub enum Objective {
-    /// Name of the function to minimise.
-    Minimise(String),
-    /// Name of the function to maximise.
-    Maximise(String),
+    /// The function to minimise: its name, or an expression.
+    Minimise(WhichFunction),
+    /// The function to maximise: its name, or an expression.
+    Maximise(WhichFunction),
 }
 
 /// Bounds on a function. Equal bounds make an equality.
@@ -309,8 +309,8 @@ pub struct Constraint {
     /// Remark for readers of the file.
     #[serde(rename = "description")]
     pub _description: Option<String>,
-    /// Name of the function.
-    pub function: String,
+    /// The function: its name, or an expression.
+    pub function: WhichFunction,
     /// Smallest value, default none.
     #[schemars(extend("design_variable" = "a bound limits the design, it is no part of it"))]
     pub lower: Option<f64>,

@@ -106,7 +106,11 @@ impl Judged {
 /// does not.
 pub fn judged(problem: &Problem, objective: usize) -> (Vec<Judged>, &'static str) {
     let functions = problem.scene(&problem.start()).functions;
-    let moves = |f: usize| !matches!(functions[f], Function::OfDesign { .. });
+    let moves = |f: usize| {
+        let needed = problem.composition.of_scene(&[f]).into_owned();
+        let mut needed = needed.into_iter().map(|g| &functions[g]);
+        needed.any(|own| !matches!(own, Function::OfDesign { .. }))
+    };
     let constraints = problem.constraints.iter().filter(|c| moves(c.function));
     let all: Vec<Judged> = constraints
         .map(|c| {

@@ -5,7 +5,7 @@ use super::evaluate::Evaluated;
 use super::integration::{Integration, Refresh};
 use super::simulate::{Simulation, simulate, simulate_with};
 use super::statics::{StaticDesign, StaticsFailure};
-use super::{error, not_finite, resolved, start, statics};
+use super::{composed, error, not_finite, resolved, start, statics};
 use crate::functions::evaluate::ungated_maximum;
 use crate::functions::instant::Instant;
 use crate::functions::{Bound, Function, Reduction};
@@ -76,7 +76,7 @@ impl Analysed {
     /// The value of a function.
     pub fn value(&self, f: usize) -> f64 {
         match self {
-            Self::Motion(at) => at.function(f).value,
+            Self::Motion(at) => at.value(f),
             Self::Statics(at) => at.function(f).value,
         }
     }
@@ -168,6 +168,9 @@ impl Analysed {
     pub(super) fn not_finite_value(&self, problem: &Problem, f: usize, value: f64) -> String {
         match self {
             Self::Motion(at) => not_finite::value(problem, at, f, value),
+            Self::Statics(at) if problem.composition.gives(f) => {
+                composed::not_finite(problem, f, value, &|g| at.function(g).value)
+            }
             Self::Statics(_) => {
                 format!("the function \"{}\" is {value}", problem.function_names[f])
             }
@@ -381,7 +384,7 @@ impl Simulated {
             .map_or(0.0, |m| m.error);
         match self {
             Self::Motion(end) => {
-                let function = &end.at.scene.functions[f];
+                let function = end.at.scene.functions.get(f)?;
                 let found = end.at.function(f);
                 let maximum = found.maximum?;
                 let Function::Reduced { of, reduction, .. } = function else {

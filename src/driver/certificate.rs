@@ -104,7 +104,7 @@ fn certified(
     (direction, tolerance, sizes): Along<'_>,
     cost: &mut CertificateCost,
 ) -> Result<CertifiedDesign, IntegrationFailure> {
-    let which: Vec<usize> = (0..at.scene.functions.len()).collect();
+    let which: Vec<usize> = (0..problem.function_names.len()).collect();
     let Some(settings) = settings(problem, at) else {
         return Ok(CertifiedDesign::default());
     };
@@ -140,18 +140,14 @@ fn certified(
             // The motion of the complex run differs by round-off, which a sensitive motion
             // magnifies.
             if same.is_none() {
-                let of_complex = Evaluated {
-                    x: at.x.clone(),
-                    scene: at.scene.clone(),
-                    run: complex.run.clone(),
-                };
+                let of_complex = at.with_run(at.scene.clone(), complex.run.clone());
                 same = Some(of_complex.derivatives(problem, &which)?.0);
                 cost.gradients += 1;
             }
             let on_same = same.as_ref().map_or(judged, |same| pair(f, same));
             if !on_same.passes(tolerance) && sums.is_none() {
                 cost.complex_runs += 1;
-                let found = sums_of_terms(problem, (&settings, event), &at.x, direction)?;
+                let found = sums_of_terms(problem, (&settings, event), at, direction)?;
                 sums = Some(found);
             }
             let sum = sums.as_ref().map_or(0.0, |sums| sums[f]);
@@ -224,10 +220,10 @@ fn certified_statics(
 fn sums_of_terms(
     problem: &Problem,
     (settings, (duration, rate)): (&Settings, (f64, f64)),
-    x: &[f64],
+    at: &Evaluated,
     direction: &[f64],
 ) -> Result<Vec<f64>, IntegrationFailure> {
-    let along = x.iter().zip(direction);
+    let along = at.x.iter().zip(direction);
     let x: Vec<Complex64> = along
         .map(|(&x, d)| Complex64::new(x, COMPLEX_STEP * d))
         .collect();
@@ -235,7 +231,12 @@ fn sums_of_terms(
     let duration = event::complex_duration(&scene, settings, (duration, rate))?;
     let run = simulate(&scene.model, duration, settings)?;
     let terms = |f: &Function<Complex64>| f.terms_over_motion(&scene.model, &run) / COMPLEX_STEP;
-    Ok(scene.functions.iter().map(terms).collect())
+    let mut all: Vec<f64> = scene.functions.iter().map(terms).collect();
+    for f in all.len()..problem.function_names.len() {
+        let partials = at.partials(f).by_function.into_iter();
+        all.push(partials.map(|(g, by)| (by * all[g]).abs()).sum());
+    }
+    Ok(all)
 }
 
 fn sum(gradient: &[Derivative], direction: &[f64], of: fn(&Derivative, f64) -> f64) -> f64 {

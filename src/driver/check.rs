@@ -1,5 +1,6 @@
 //! The check of gradients: adjoint against complex step.
 
+use super::composed::infinitesimal;
 use super::evaluate::Evaluated;
 use super::event;
 use super::integration::Integration;
@@ -86,7 +87,7 @@ fn relative(x: f64, exact: f64) -> f64 {
 /// If a simulation fails.
 pub fn check(problem: &Problem, x: &[f64]) -> Result<Vec<CheckedDerivative>, IntegrationFailure> {
     let scene = problem.scene(x);
-    let which: Vec<usize> = (0..scene.functions.len()).collect();
+    let which: Vec<usize> = (0..problem.function_names.len()).collect();
     let mut integration = Integration::new(problem, &scene, Some(&which), true);
     let (in_use, _) = Evaluated::with(&mut integration, problem, x)?;
     let Some((settings, _)) = integration.chosen() else {
@@ -108,11 +109,7 @@ pub fn check(problem: &Problem, x: &[f64]) -> Result<Vec<CheckedDerivative>, Int
     let Some(first) = steps.first() else {
         return Ok(Vec::new());
     };
-    let same = Evaluated {
-        x: x.to_vec(),
-        scene: in_use.scene.clone(),
-        run: first.run.clone(),
-    };
+    let same = in_use.with_run(in_use.scene.clone(), first.run.clone());
     let (adjoint, _) = same.derivatives(problem, &which)?;
     let (in_use, _) = in_use.gradients(problem, &which)?;
     let scale_of = |i: usize| problem.variables[i].scale;
@@ -145,6 +142,12 @@ pub fn check(problem: &Problem, x: &[f64]) -> Result<Vec<CheckedDerivative>, Int
 /// The size of function f that determines its round-off: its value, or the size of its kind in a
 /// scene of this length L and duration T, as a value may be a difference.
 pub(super) fn own_size(at: &Evaluated, f: usize) -> f64 {
+    if at.composition.gives(f) {
+        let terms = at.partials(f).by_function.into_iter();
+        let terms = terms.filter(|(_, by)| *by != 0.0);
+        let sizes = terms.map(|(g, by)| by.abs() * own_size(at, g));
+        return sizes.sum::<f64>().max(at.value(f).abs());
+    }
     let (length, time) = (length_scale(&at.scene.model), at.run.duration);
     let (of, reduction) = match &at.scene.functions[f] {
         Function::Reduced { of, reduction, .. } => (of, *reduction),
@@ -285,10 +288,10 @@ pub(super) fn complex_step(
     let scene = problem.scene(&x);
     let duration = event::complex_duration(&scene, settings, event)?;
     let run = simulate(&scene.model, duration, settings)?;
-    let derivative =
-        |f: &Function<Complex64>| f.evaluate(&scene.model, &run).value.im / COMPLEX_STEP;
+    let value = |f: &Function<Complex64>| f.evaluate(&scene.model, &run).value;
+    let values: Vec<Complex64> = scene.functions.iter().map(value).collect();
     Ok(ComplexStep {
-        derivatives: scene.functions.iter().map(derivative).collect(),
+        derivatives: infinitesimal(&problem.composition, &x, &values, COMPLEX_STEP),
         run: run.real(),
     })
 }

@@ -17,6 +17,8 @@
 //! as f_h, and the difference of both may vanish. Such motions, and those by methods up to order three, are made with
 //! doubled steps, too, and all three are judged together (see [`of_three`]).
 
+use super::estimate::with_expressions;
+pub use super::estimate::{Estimate, FunctionError};
 use super::evaluate::Evaluated;
 use super::event::{self, Admit};
 use super::integration::looks_at_the_whole;
@@ -25,32 +27,6 @@ use crate::integrate::{
     Grid, IntegrationFailure, Limits, Samples, Settings, Spacing, Trajectory, quadrature, simulate,
 };
 use crate::problem::Problem;
-
-/// A number with its estimated error.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Estimate {
-    /// The number on the steps in use.
-    pub value: f64,
-    /// Its estimated error, absolute.
-    pub error: f64,
-    /// The error of the steps, with its sign.
-    pub of_steps: f64,
-    /// The error of the samples, with its sign.
-    pub of_samples: f64,
-}
-
-/// A function's value and, if requested, its gradient in the design variables.
-#[derive(Clone, Debug, PartialEq)]
-pub struct FunctionError {
-    /// The function, by index.
-    pub function: usize,
-    /// Its value.
-    pub value: Estimate,
-    /// The largest value over the motion, if it is an aggregate.
-    pub maximum: Option<Estimate>,
-    /// Its derivatives in the variables; empty if they were not requested.
-    pub gradient: Vec<Estimate>,
-}
 
 /// Estimates the discretisation errors of the functions `which` at a simulated design, and of their
 /// gradients if `gradients`.
@@ -63,6 +39,18 @@ pub fn estimate(
     which: &[usize],
     gradients: bool,
 ) -> Result<Vec<FunctionError>, IntegrationFailure> {
+    with_expressions((problem, &at.x), which, |which| {
+        of_scene(problem, at, which, gradients)
+    })
+}
+
+/// Those of functions of the scene.
+fn of_scene(
+    problem: &Problem,
+    at: &Evaluated,
+    which: &[usize],
+    gradients: bool,
+) -> Result<Vec<FunctionError>, IntegrationFailure> {
     let sums = |f: &usize| looks_at_the_whole(&at.scene.functions[*f]);
     let summed: Vec<usize> = which.iter().copied().filter(sums).collect();
     let cells = at.run.has_cells;
@@ -70,8 +58,7 @@ pub fn estimate(
     let settings = halved(&at.run, (cells, !summed.is_empty()), limits);
     let mut scene = at.scene.clone();
     let run = event::settle(&mut scene, &settings, at.run.duration, Admit::Late)?;
-    let x = at.x.clone();
-    let mut fine = Evaluated { x, scene, run };
+    let mut fine = at.with_run(scene, run);
     let numbers = |of: &Evaluated, which: &[usize]| -> Result<Vec<Vec<f64>>, IntegrationFailure> {
         let mut all: Vec<Vec<f64>> = which.iter().map(|&f| vec![of.function(f).value]).collect();
         if gradients && !which.is_empty() && !problem.variables.is_empty() {
@@ -101,9 +88,8 @@ pub fn estimate(
                 samples: Samples::Quadrature(0),
                 ..settings
             };
-            let (x, scene) = (at.x.clone(), at.scene.clone());
-            let run = simulate(&scene.model, at.run.duration, &doubled)?;
-            Evaluated { x, scene, run }
+            let run = simulate(&at.scene.model, at.run.duration, &doubled)?;
+            at.with_run(at.scene.clone(), run)
         }
         (false, true) => {
             thin(&mut fine.run);
@@ -262,23 +248,14 @@ fn doubled(
     let Ok(found) = event::settle(&mut scene, &settings, run.duration, Admit::Late) else {
         return Ok(None);
     };
-    let x = at.x.clone();
-    let coarse = Evaluated {
-        x,
-        scene,
-        run: found,
-    };
+    let coarse = at.with_run(scene, found);
     // The motion by the steps in use with the samples of the other.
     let mut thinned: Evaluated;
     let same = match (cells, summed.is_empty()) {
         (_, true) => at,
         (true, false) => between,
         (false, false) => {
-            thinned = Evaluated {
-                x: at.x.clone(),
-                scene: at.scene.clone(),
-                run: at.run.clone(),
-            };
+            thinned = at.with_run(at.scene.clone(), at.run.clone());
             thin(&mut thinned.run);
             &thinned
         }

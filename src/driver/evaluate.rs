@@ -1,5 +1,7 @@
 //! Functions and gradients of a problem at a design: one simulation, one backward march.
 
+use super::composed;
+pub use super::composed::Derivative;
 use super::event;
 use super::integration::{Integration, Refresh};
 use crate::adjoint::{self, Target, WeightedHistories};
@@ -13,8 +15,9 @@ use crate::math::soft_max::Smoothed;
 use crate::math::{Complex64, Dual, Parameters};
 use crate::model::RigidBody;
 use crate::model::flexible::FlexibleBody;
-use crate::problem::{Focus, Problem};
+use crate::problem::{Composition, Focus, Partials, Problem};
 use std::borrow::Cow;
+use std::sync::Arc;
 
 /// A norm is zero below this part of its size in the scene: to round-off, and for warnings.
 const ZERO: f64 = 64.0 * f64::EPSILON;
@@ -28,6 +31,8 @@ pub struct Evaluated {
     pub scene: Scene<f64>,
     /// Its motion.
     pub run: Trajectory<f64>,
+    /// Functions that expressions of others give.
+    pub composition: Arc<Composition>,
 }
 
 /// A design with an infinitesimal change of all variables, each in its scale.
@@ -86,7 +91,24 @@ impl Evaluated {
             (run, refresh) = (resolved, more.or(refresh));
         }
         let x = x.to_vec();
-        Ok((Self { x, scene, run }, refresh))
+        let composition = problem.composition.clone();
+        let at = Self {
+            x,
+            scene,
+            run,
+            composition,
+        };
+        Ok((at, refresh))
+    }
+
+    /// The same design with another motion.
+    pub fn with_run(&self, scene: Scene<f64>, run: Trajectory<f64>) -> Self {
+        Self {
+            x: self.x.clone(),
+            scene,
+            run,
+            composition: self.composition.clone(),
+        }
     }
 
     /// The scene as it is written, and the motion of all its bodies. Bodies that no function
@@ -140,14 +162,21 @@ impl Evaluated {
         (written, motion.map_or(Cow::Borrowed(&self.run), Cow::Owned))
     }
 
-    /// Why function f has no derivative by the design here, if so.
+    /// Why function f has no derivative by the design here, if so; of an expression, why one that it names has none.
     pub fn no_derivative(&self, problem: &Problem, f: usize) -> Option<String> {
-        self.vanishes(problem, f, ZERO)
+        match self.composition.gives(f) {
+            false => self.vanishes(problem, f, ZERO),
+            true => {
+                let moving = self.partials(f).by_function.into_iter();
+                let mut moving = moving.filter(|(_, by)| *by != 0.0);
+                moving.find_map(|(g, _)| self.vanishes(problem, g, ZERO))
+            }
+        }
     }
 
     /// Why the history of function f has no derivative by the design here, if so.
     pub fn no_derivative_of_history(&self, problem: &Problem, f: usize) -> Option<String> {
-        let instant = self.scene.functions[f].instant()?.clone();
+        let instant = self.scene.functions.get(f)?.instant()?.clone();
         let over_all = Function::reduced(instant, Reduction::Integral);
         self.vanishing(problem, (f, &over_all), ZERO)
     }
@@ -176,6 +205,8 @@ impl Evaluated {
     /// Warnings of the functions `which`: of a speed that passes through its kink at rest, of a norm that is
     /// zero, and of a peak that the samples do not resolve.
     pub fn doubts(&self, problem: &Problem, which: impl Iterator<Item = usize>) -> Vec<String> {
+        let asked: Vec<usize> = which.collect();
+        let which = self.composition.of_scene(&asked);
         let doubts = |f: usize| {
             let name = &problem.function_names[f];
             let rests = passes_rest(&self.scene.functions[f], &self.scene.model, &self.run);
@@ -196,16 +227,39 @@ impl Evaluated {
             let kink = kink.or_else(|| self.vanishes(problem, f, ALMOST_ZERO));
             kink.into_iter().chain(narrow)
         };
-        which.flat_map(doubts).collect()
+        which.iter().copied().flat_map(doubts).collect()
     }
 
-    /// A function of interest, by index.
+    /// A function of interest, by index. An expression has a value alone.
     pub fn function(&self, index: usize) -> evaluate::Evaluated<f64> {
-        self.scene.functions[index].evaluate(&self.scene.model, &self.run)
+        match self.composition.gives(index) {
+            true => evaluate::Evaluated {
+                value: self.value(index),
+                maximum: None,
+                peak_sharpness: 0.0,
+            },
+            false => self.scene.functions[index].evaluate(&self.scene.model, &self.run),
+        }
+    }
+
+    /// The value of a function of interest, by index.
+    pub fn value(&self, index: usize) -> f64 {
+        let of = |g: usize| self.function(g).value;
+        self.composition.value(index, &self.x, &of)
+    }
+
+    /// Derivatives of an expression by the functions and numbers that it names.
+    pub fn partials(&self, index: usize) -> Partials {
+        let of = |g: usize| self.function(g).value;
+        self.composition.partials(index, &self.x, &of)
     }
 
     /// What a function of interest stands for, if something in it is smoothed.
     pub fn smoothed(&self, index: usize) -> Option<Smoothed> {
+        if self.composition.gives(index) {
+            let one = |g: usize| (self.smoothed(g), self.function(g).value);
+            return composed::smoothed(&self.composition, index, &self.x, &one);
+        }
         let function = &self.scene.functions[index];
         let found = self.function(index);
         smoothed::of_motion(function, &self.scene.model, &self.run, &found)
@@ -235,7 +289,7 @@ impl Evaluated {
         which: &[usize],
     ) -> Result<(Vec<Vec<Derivative>>, WorkCounts), IntegrationFailure> {
         // A function that is requested twice, as objective and in a constraint, is swept once.
-        let mut once = which.to_vec();
+        let mut once = self.composition.of_scene(which).into_owned();
         once.sort_unstable();
         once.dedup();
         let place = |f: &usize| {
@@ -244,8 +298,12 @@ impl Evaluated {
         };
         let targets = once.iter().map(|&f| Target::Function(f)).collect();
         let (all, counts) = self.derivatives_of(problem, targets)?;
-        let asked = which.iter().map(|f| all[place(f)].clone()).collect();
-        Ok((asked, counts))
+        let row = |g: usize| &all[place(&g)][..];
+        let one = |&f: &usize| match self.composition.gives(f) {
+            true => composed::derivatives(&self.partials(f), &row),
+            false => row(f).to_vec(),
+        };
+        Ok((which.iter().map(one).collect(), counts))
     }
 
     /// Exact derivatives of functions of histories, from their cotangents: one row for each of `histories`,
@@ -323,15 +381,6 @@ fn along_event(function: &Scene<f64>, event: &Scene<f64>) -> (Scene<f64>, Scene<
         out
     };
     (with(&|f, e| f - e), with(&|f, e| f.abs() + e.abs()))
-}
-
-/// A derivative in a variable: the sum over the parameters of the scene that it moves.
-#[derive(Clone, Copy, Debug, Default, PartialEq)]
-pub struct Derivative {
-    /// The sum.
-    pub value: f64,
-    /// The sum of the sizes of the terms; its last digits are round-off.
-    pub terms: f64,
 }
 
 /// Derivative of every parameter of the scene in variable i.

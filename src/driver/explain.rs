@@ -4,6 +4,7 @@ use super::bases;
 use super::evaluate::{Derivative, Evaluated};
 use super::integration::{Integration, looks_at_the_whole};
 use super::{memory, stretch};
+use crate::functions::Scene;
 use crate::integrate::implicit::cost::factor_cost;
 use crate::integrate::implicit::krylov::PRODUCTS_OF_FACTORS;
 use crate::integrate::{IntegrationFailure, LinearSolver, Method, Trajectory};
@@ -35,7 +36,12 @@ impl MotionExplanation {
             scene.duration *= stretch.part;
             let run = stretch.run;
             return Ok(Self {
-                at: Evaluated { x, scene, run },
+                at: Evaluated {
+                    x,
+                    scene,
+                    run,
+                    composition: problem.composition.clone(),
+                },
                 reason: stretch.reason,
                 part: Some(stretch.part),
                 steps: stretch.steps,
@@ -166,18 +172,19 @@ pub fn explain(problem: &Problem) -> Explanation {
     (found.bodies, found.joints) = (problem.body_count(), problem.joint_count());
     found.loads = model.loads.len();
     found.written = size(model, placement::guess(model));
-    let mut known = found.functions.into_iter();
-    let use_of = |(f, name): (usize, &String)| match seen.functions.binary_search(&f) {
-        Ok(_) => known.next(),
-        Err(_) => Some(FunctionUse {
+    let mut known = found.functions;
+    let use_of = |(f, name): (usize, &String)| match known.iter().position(|own| own.name == *name)
+    {
+        Some(place) => known.swap_remove(place),
+        None => FunctionUse {
             name: name.clone(),
             used: String::new(),
-            whole_motion: looks_at_the_whole(&whole.functions[f]),
+            whole_motion: sees_all(problem, &whole, f),
             variables: None,
-        }),
+        },
     };
     found.functions = (problem.function_names.iter().enumerate())
-        .filter_map(use_of)
+        .map(use_of)
         .collect();
     found
 }
@@ -188,7 +195,7 @@ fn explain_seen(problem: &Problem) -> Explanation {
     let written = problem.unlowered_scene(&x).model;
     let scene = problem.scene(&x);
     let (left_out, kept) = lowering(problem, &written, &scene.model);
-    let which: Vec<usize> = (0..scene.functions.len()).collect();
+    let which: Vec<usize> = (0..problem.function_names.len()).collect();
     let motion = MotionExplanation::of(problem, &which);
     let found = match &motion {
         Ok(motion) => motion.derivatives(problem, &which),
@@ -201,7 +208,7 @@ fn explain_seen(problem: &Problem) -> Explanation {
         .map(|&f| FunctionUse {
             name: problem.function_names[f].clone(),
             used: used(problem, f).join(", "),
-            whole_motion: looks_at_the_whole(&scene.functions[f]),
+            whole_motion: sees_all(problem, &scene, f),
             variables: derived.map(|gradients| names(problem, |i| depends(&gradients[f][i]))),
         })
         .collect();
@@ -275,6 +282,12 @@ fn names(problem: &Problem, which: impl Fn(usize) -> bool) -> Vec<String> {
     wanted.map(|(_, variable)| variable.name.clone()).collect()
 }
 
+/// Whether a function looks at the whole motion.
+fn sees_all(problem: &Problem, scene: &Scene<f64>, f: usize) -> bool {
+    let own = problem.composition.of_scene(&[f]).into_owned();
+    own.iter().any(|&g| looks_at_the_whole(&scene.functions[g]))
+}
+
 /// The use of function f in an optimisation.
 fn used(problem: &Problem, f: usize) -> Vec<&'static str> {
     let mut used = Vec::new();
@@ -286,6 +299,9 @@ fn used(problem: &Problem, f: usize) -> Vec<&'static str> {
     }
     if problem.constraints.iter().any(|own| own.function == f) {
         used.push("constraint");
+    }
+    if problem.composition.names(f) {
+        used.push("expression");
     }
     used
 }

@@ -100,7 +100,8 @@ impl Integration {
     ) -> Self {
         let simulation = &problem.simulation;
         let all: Vec<usize> = (0..scene.functions.len()).collect();
-        let mut summed = asked.map_or(all, <[usize]>::to_vec);
+        let asked_of_scene = |asked| problem.composition.of_scene(asked).into_owned();
+        let mut summed = asked.map_or(all, asked_of_scene);
         summed.retain(|&f| looks_at_the_whole(&scene.functions[f]));
         let shown = simulation.samples.unwrap_or(SAMPLES);
         // An event is looked for inside every step, whatever the samples.

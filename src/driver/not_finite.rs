@@ -1,11 +1,20 @@
 //! Origin of a number that is not finite.
 
+use super::composed;
 use super::evaluate::Evaluated;
 use crate::functions::{Function, Instant};
 use crate::problem::Problem;
 
 /// A function whose value is not finite, and the time from which on its data are not.
 pub fn value(problem: &Problem, at: &Evaluated, f: usize, value: f64) -> String {
+    if at.composition.gives(f) {
+        let of = |g: usize| at.value(g);
+        let needed = at.composition.of_scene(&[f]).into_owned();
+        return match needed.iter().find(|&&g| !of(g).is_finite()) {
+            Some(&g) => self::value(problem, at, g, of(g)),
+            None => composed::not_finite(problem, f, value, &of),
+        };
+    }
     let name = &problem.function_names[f];
     let own = match &at.scene.functions[f] {
         Function::Reduced { of, during, .. } => {

@@ -208,7 +208,7 @@ pub fn requested(problem: &Problem) -> impl Iterator<Item = usize> {
 fn empty_history(problem: &Problem) -> History {
     let function = |name: &str, index: usize| Column {
         name: name.to_string(),
-        unit: Some(problem.function_unit(index)),
+        unit: Some(problem.function_unit(index)).filter(|unit| !unit.is_empty()),
     };
     let objective = problem.objective.map_or(0, |o| o.function);
     let variables = problem.variables.iter();

@@ -131,7 +131,7 @@ pub(super) fn record(
                 RecordedSense::Minimise
             },
             value,
-            unit: Some(problem.function_unit(objective.function)),
+            unit: known(problem.function_unit(objective.function)),
             true_maximum: end.and_then(|end| end.maximum(objective.function)),
             aggregate: aggregate(objective.function),
             true_value: end.and_then(|end| end.true_value(objective.function)),
@@ -235,7 +235,7 @@ fn constraints(
                 start: at_start(c.function),
                 lower: Some(c.lower).filter(|b| b.is_finite()),
                 upper: Some(c.upper).filter(|b| b.is_finite()),
-                unit: Some(problem.function_unit(c.function)),
+                unit: known(problem.function_unit(c.function)),
                 multiplier,
                 active: active(&c.name),
                 aggregate: aggregate(c.function),
@@ -245,6 +245,11 @@ fn constraints(
             (c.name.clone(), constraint)
         })
         .collect()
+}
+
+/// A unit, if it is known.
+fn known(unit: String) -> Option<String> {
+    Some(unit).filter(|unit| !unit.is_empty())
 }
 
 /// Part of a bound below which the error of a constraint stands in the table alone.

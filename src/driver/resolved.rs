@@ -82,7 +82,7 @@ pub fn advice(problem: &Problem) -> &'static str {
 /// If the simulation or a gradient fails.
 pub fn of_design(problem: &Problem, x: &[f64]) -> Result<Vec<Unresolved>, IntegrationFailure> {
     let scene = problem.scene(x);
-    let which: Vec<usize> = (0..scene.functions.len()).collect();
+    let which: Vec<usize> = (0..problem.function_names.len()).collect();
     let mut integration = Integration::new(problem, &scene, Some(&which), true);
     let (at, _) = Evaluated::with(&mut integration, problem, x)?;
     by_halves(problem, &at, &which, &|f, gradient| {
@@ -184,11 +184,8 @@ fn on_doubled_steps(problem: &Problem, at: &Evaluated, which: &[usize]) -> Optio
         limits: problem.simulation.limits.clone(),
         ..Settings::steps(run.method, 1)
     };
-    let coarse = Evaluated {
-        x: at.x.clone(),
-        scene: at.scene.clone(),
-        run: simulate(&at.scene.model, run.duration, &settings).ok()?,
-    };
+    let coarse = simulate(&at.scene.model, run.duration, &settings).ok()?;
+    let coarse = at.with_run(at.scene.clone(), coarse);
     Some(coarse.gradients(problem, which).ok()?.0)
 }
 

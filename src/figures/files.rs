@@ -1,6 +1,7 @@
 //! The figures of a simulation and of an optimisation.
 
 use super::connectors::connectors;
+use super::constraints::of_constraints;
 use super::detail::Detail;
 use super::elastic_figures::{
     SEEN, colours, deflections, displaced, elastic, has_stress, keep_the_largest, limits, patches,
@@ -27,8 +28,9 @@ use crate::report::History;
 const MOST_NUMBERS: usize = 40_000;
 
 /// The names of all figures.
-pub const NAMES: [&str; 9] = [
+pub const NAMES: [&str; 10] = [
     "convergence.svg",
+    "constraints.svg",
     "motion.svg",
     "energy.svg",
     "deflection.svg",
@@ -83,13 +85,8 @@ fn figures(
         .iter()
         .zip(&drawings)
         .map(|((title, design), drawing)| {
-            lapse(
-                title,
-                design,
-                drawing,
-                problem.stated_objective().map(|o| o.function),
-                &stressed,
-            )
+            let objective = thrown_for(problem);
+            lapse(title, design, drawing, objective.as_deref(), &stressed)
         })
         .collect();
     if let Some(drawing) = drawings.last() {
@@ -100,6 +97,13 @@ fn figures(
         .map(|(title, design)| energies(title, design))
         .collect();
     all.push(("energy.svg", energy(&energies)));
+    let limited = of_constraints(problem, designs);
+    if !limited.is_empty() {
+        let rows = limited
+            .iter()
+            .map(|(label, curves)| (&label[..], curves.clone()));
+        all.push(("constraints.svg", histories(&rows.collect::<Vec<_>>())));
+    }
     let deforms = |drawing: &Drawing| !drawing.elastic_points.is_empty();
     if drawings.iter().any(deforms) {
         let curves = pairs().map(|((title, design), drawing)| deflections(title, design, drawing));
@@ -131,6 +135,12 @@ fn figures(
     all.into_iter()
         .filter_map(|(name, svg)| Some((name, svg.ok()?.into_bytes())))
         .collect()
+}
+
+/// The functions of the scene that the objective needs, if there is one.
+pub(super) fn thrown_for(problem: &Problem) -> Option<Vec<usize>> {
+    let objective = problem.stated_objective()?.function;
+    Some(problem.composition.of_scene(&[objective]).into_owned())
 }
 
 fn scenery(drawing: &Drawing) -> Scenery {
@@ -178,7 +188,7 @@ fn lapse(
     title: &str,
     simulation: &Simulation,
     drawing: &Drawing,
-    objective: Option<usize>,
+    objective: Option<&[usize]>,
     stresses: &[Curves],
 ) -> Motion {
     let run = simulation.motion();

@@ -17,25 +17,26 @@ pub(super) struct Release {
     pub flight: Flight,
 }
 
-/// The release of a design: at the end of the run, or where the gated range is largest. `None` if the
-/// objective is no range, or if gravity does not point down in the view.
+/// The release of a design: at the end of the run, or where the gated range is largest. `None` if no
+/// function of the scene that the objective needs is a range, or if gravity does not point down in the view.
 pub(super) fn release(
     simulation: &Simulation,
     drawing: &Drawing,
-    objective: Option<usize>,
+    objective: Option<&[usize]>,
 ) -> Option<Release> {
     let (written, run) = (&simulation.written, simulation.motion());
     let (model, functions) = (&written.model, &written.functions);
     if drawing.up.dot(&model.gravity) >= -0.999 * model.gravity.norm() {
         return None;
     }
-    let which = objective.map_or(0..functions.len(), |f| f..f + 1);
-    let (sample, thrown) = functions[which].iter().find_map(|function| {
+    let all: Vec<usize> = (0..functions.len()).collect();
+    let mut which = objective.unwrap_or(&all).iter();
+    let (sample, thrown) = which.find_map(|&f| {
         let Function::Reduced {
             of: Quantity::Of(instant @ Instant::Range { projectile, .. }),
             during: None,
             reduction,
-        } = function
+        } = functions.get(f)?
         else {
             return None;
         };

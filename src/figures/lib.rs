@@ -12,6 +12,7 @@
 //! | [`vtu`] | a file of fields, a pure function of plain data |
 
 mod connectors;
+mod constraints;
 mod detail;
 pub mod elastic_figures;
 mod error;

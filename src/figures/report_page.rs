@@ -1,8 +1,10 @@
 //! The page of a result: what moves, and the curves of its functions.
 
 use super::connectors::{Joined, joined};
+use super::constraints::{growth, is_integral, window};
 use super::detail::Detail;
 use super::elastic_figures::{SEEN, colours, deflections, keep_the_largest, stresses};
+use super::files::thrown_for;
 use super::flight::release;
 use super::forces::arrows;
 use super::shapes::{shape, thickness};
@@ -34,7 +36,7 @@ struct Shown<'a> {
     simulation: &'a Simulation,
     drawing: Drawing,
     stresses: Curves,
-    objective: Option<usize>,
+    objective: Option<Vec<usize>>,
 }
 
 impl<'a> Shown<'a> {
@@ -49,7 +51,7 @@ impl<'a> Shown<'a> {
                 &drawing,
             ),
             drawing,
-            objective: problem.stated_objective().map(|own| own.function),
+            objective: thrown_for(problem),
         }
     }
 }
@@ -174,26 +176,44 @@ fn curves(problem: &Problem, motions: &[Shown]) -> Vec<Chart> {
     if shown.is_empty() {
         shown = (0..problem.function_names.len()).collect();
     }
+    let mut shown = problem.composition.of_scene(&shown).into_owned();
     shown.sort_unstable();
     shown.dedup();
     for f in shown {
+        let is_limited = problem.constraints.iter().any(|c| c.function == f);
         let of = |Shown {
                       title, simulation, ..
                   }: &Shown| {
             let (written, run) = (&simulation.written, simulation.motion());
-            let quantity = written.functions.get(f)?.quantity()?;
+            let function = written.functions.get(f)?;
+            let quantity = function.quantity()?;
             let values = quantity.sample(&written.model, run);
-            let points = values.iter().enumerate().map(|(k, &v)| [run.time(k), v]);
-            Some((Curve::new(named(title, ""), points), quantity.unit()))
+            let time: Vec<f64> = (0..values.len()).map(|k| run.time(k)).collect();
+            // A limit is one of the integral.
+            let grows = is_integral(function) && is_limited;
+            let (values, unit) = match grows {
+                true => {
+                    let ends = window(function, written, run);
+                    (growth(&time, &values, ends), function.unit())
+                }
+                false => (values, quantity.unit()),
+            };
+            let points = time.iter().zip(values).map(|(&t, v)| [t, v]);
+            Some((Curve::new(named(title, ""), points), (grows, unit)))
         };
-        let found: Vec<(Curve, String)> = motions.iter().filter_map(of).collect();
-        let Some(unit) = found.first().map(|(_, unit)| unit.clone()) else {
+        let found: Vec<(Curve, (bool, String))> = motions.iter().filter_map(of).collect();
+        let Some((grows, unit)) = found.first().map(|own| own.1.clone()) else {
             continue;
         };
         let unit = if unit.is_empty() { "1" } else { &unit };
         let curves = found.into_iter().map(|(curve, _)| curve).collect();
         let name = &problem.function_names[f];
-        let mut own = chart(name, &format!("at an instant [{unit}]"), curves);
+        let what = if grows {
+            "integral up to t"
+        } else {
+            "at an instant"
+        };
+        let mut own = chart(name, &format!("{what} [{unit}]"), curves);
         let limits = problem.constraints.iter().filter(|c| c.function == f);
         let sides = limits.flat_map(|c| [(&c.name, c.lower), (&c.name, c.upper)]);
         let finite = sides.filter(|(_, value)| value.is_finite());
@@ -308,7 +328,7 @@ fn stage(shown: &Shown, notes: &mut Vec<String>) -> (Option<Stage>, Stage) {
         ));
     }
     let coloured = colours(model, drawing, std::slice::from_ref(stresses));
-    let release = release(simulation, drawing, *objective);
+    let release = release(simulation, drawing, objective.as_deref());
     if let Some(own) = release.as_ref().filter(|own| own.sample < run.last()) {
         notes.push(format!(
             "The {of}: the projectile is let go at t = {:.4} s. Its flight begins there; the machine is shown as if it kept it.",

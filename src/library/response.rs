@@ -136,8 +136,8 @@ impl Motion {
 
     /// Value of every function, in the order of [`Problem::functions`].
     pub fn values(&self) -> Vec<f64> {
-        let count = self.at.scene.functions.len();
-        (0..count).map(|f| self.at.function(f).value).collect()
+        let count = self.problem.function_names.len();
+        (0..count).map(|f| self.at.value(f)).collect()
     }
 
     /// Exact gradients of the functions with the indices `which`, on the steps of this motion.

@@ -17,6 +17,7 @@ use crate::schema::OF_PARAMETERS;
 use indexmap::IndexMap;
 use serde_json::{Map, Number, Value};
 use std::borrow::Cow;
+use std::ops::Range;
 
 /// Most faults of bounds that are reported.
 const MOST_BOUNDS: usize = 5;
@@ -43,6 +44,8 @@ pub struct Derived {
     variables: usize,
     /// Each in terms of the variables and of those before it.
     list: Vec<(String, Expression<Operand>)>,
+    /// Places of the parameters that change with the design.
+    places: IndexMap<String, usize>,
 }
 
 /// What a name stands for.
@@ -86,7 +89,8 @@ impl Expressions {
                 }
                 Err(fault) => {
                     let mut finding = Finding::new(pointer, fault.found, fault.expected);
-                    finding.part = place(source, pointer, fault.at.start, text);
+                    let bytes = place(source, pointer, (fault.at.start, text.len()), text, 1);
+                    finding.part = bytes.map_or(Part::Value, Part::Bytes);
                     findings.push(finding);
                 }
             }
@@ -190,6 +194,7 @@ impl Expressions {
         let mut derived = Derived {
             variables: variables.len(),
             list: Vec::new(),
+            places: IndexMap::new(),
         };
         let mut places: IndexMap<String, usize> = IndexMap::new();
         for (index, variable) in variables.iter().enumerate() {
@@ -252,6 +257,7 @@ impl Expressions {
                 }
             }
         }
+        derived.places = places;
         findings.extend(derived.beyond_limits(variables, structure));
         // What is not known is not told.
         for variable in variables.iter_mut().filter(|own| own.unit == OF_PARAMETERS) {
@@ -326,23 +332,30 @@ fn names_of(parameters: Option<&Map<String, Value>>) -> Vec<Finding> {
     wrong.collect()
 }
 
-/// The bytes of the file from byte `at` of an expression on; the whole text if it is written with escapes.
-fn place(source: &Source, pointer: &str, at: usize, text: &str) -> Part {
-    let Some(bytes) = source.value(pointer) else {
-        return Part::Value;
-    };
-    // A quotation mark and an equals sign come before it, and a quotation mark after it.
-    let written = bytes.len() == text.len() + 3;
-    match written {
-        true => Part::Bytes(bytes.start + 2 + at..bytes.end - 1),
-        false => Part::Value,
-    }
+/// The bytes of the file from one byte of a text to another, with `skipped` bytes between its quotation mark and the
+/// text; `None` if it is written with escapes.
+pub(super) fn place(
+    source: &Source,
+    pointer: &str,
+    (from, to): (usize, usize),
+    text: &str,
+    skipped: usize,
+) -> Option<Range<usize>> {
+    let bytes = source.value(pointer)?;
+    let start = bytes.start + 1 + skipped;
+    let written = bytes.len() == text.len() + 2 + skipped;
+    written.then(|| start + from..(start + to).max(start + from))
 }
 
 impl Derived {
     /// Number of derived numbers.
     pub fn count(&self) -> usize {
         self.list.len()
+    }
+
+    /// The place of a parameter in the design and what follows from it, if it changes.
+    pub fn place(&self, parameter: &str) -> Option<usize> {
+        self.places.get(parameter).copied()
     }
 
     /// Pointers to the derived numbers of the document.

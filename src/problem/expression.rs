@@ -1,4 +1,4 @@
-//! Expressions of numbers, such as `L/2 + 3*deg`: their grammar and values in any scalar.
+//! Expressions of numbers and functions, such as `L/2 + 3*deg`: their grammar and values in any scalar.
 //!
 //! ```text
 //! sum     = product { ("+" | "-") product }
@@ -6,6 +6,7 @@
 //! sign    = ["-" | "+"] sign | power
 //! power   = atom ["^" sign]
 //! atom    = number | name | name "(" sum { "," sum } ")" | "(" sum ")"
+//! name    = word | "'" text "'" | "`" text "`"
 //! ```
 
 use crate::math::Scalar;
@@ -18,6 +19,9 @@ pub const MARK: char = '=';
 const DEEPEST: usize = 50;
 /// Largest whole exponent that multiplies; others take exp(b ln a).
 const LARGEST_POWER: f64 = 64.0;
+
+/// Marks around names that are no words.
+const QUOTES: [char; 2] = ['\'', '`'];
 
 /// Names of constants, and their values.
 const CONSTANTS: [(&str, f64); 2] = [("pi", PI), ("deg", PI / 180.0)];
@@ -105,12 +109,31 @@ pub struct ExpressionFault {
     pub expected: &'static str,
 }
 
+/// A name with its place.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Placed {
+    /// The name, without quotation marks.
+    pub name: String,
+    /// Its bytes of the text, quotation marks included.
+    pub at: Range<usize>,
+}
+
 impl Expression<String> {
     /// Reads an expression.
     ///
     /// # Errors
     /// The place that does not follow the grammar.
     pub fn parse(text: &str) -> Result<Self, ExpressionFault> {
+        Expression::parse_placed(text)?.named(&mut |own| Ok(own.name.clone()))
+    }
+}
+
+impl Expression<Placed> {
+    /// Reads an expression and keeps the places of its names.
+    ///
+    /// # Errors
+    /// The place that does not follow the grammar.
+    pub fn parse_placed(text: &str) -> Result<Self, ExpressionFault> {
         let mut parser = Parser {
             text,
             at: 0,
@@ -180,7 +203,7 @@ impl<N> Expression<N> {
     }
 
     /// Its value, if it is a number with or without a sign.
-    fn constant(&self) -> Option<f64> {
+    pub fn constant(&self) -> Option<f64> {
         match self {
             Self::Number(number) => Some(*number),
             Self::Minus(inner) => inner.constant().map(|number| -number),
@@ -230,7 +253,7 @@ struct Parser<'a> {
     depth: usize,
 }
 
-type Parsed = Result<Expression<String>, ExpressionFault>;
+type Parsed = Result<Expression<Placed>, ExpressionFault>;
 
 impl<'a> Parser<'a> {
     /// The next character that is no space.
@@ -318,6 +341,7 @@ impl<'a> Parser<'a> {
             }
             Some(c) if c.is_ascii_digit() || c == '.' => self.number(),
             Some(c) if c.is_alphabetic() || c == '_' => self.name(),
+            Some(mark) if QUOTES.contains(&mark) => self.quoted(mark),
             _ => Err(self.fault("a number, a name or '('")),
         }
     }
@@ -353,6 +377,24 @@ impl<'a> Parser<'a> {
         }
     }
 
+    /// A name between two marks.
+    fn quoted(&mut self, mark: char) -> Parsed {
+        let start = self.at;
+        let rest = &self.text[start + mark.len_utf8()..];
+        let Some(length) = rest.find(mark) else {
+            return Err(ExpressionFault {
+                at: start..self.text.len(),
+                found: format!("a name after {mark} without an end"),
+                expected: "the same mark at its end",
+            });
+        };
+        self.at = start + length + 2 * mark.len_utf8();
+        Ok(Expression::Name(Placed {
+            name: rest[..length].to_owned(),
+            at: start..self.at,
+        }))
+    }
+
     fn name(&mut self) -> Parsed {
         let name = self.run(|c| c.is_alphanumeric() || c == '_');
         let at = self.at..self.at + name.len();
@@ -361,7 +403,10 @@ impl<'a> Parser<'a> {
             let constant = CONSTANTS.iter().find(|(own, _)| *own == name);
             return Ok(match constant {
                 Some((_, value)) => Expression::Number(*value),
-                None => Expression::Name(name.to_owned()),
+                None => Expression::Name(Placed {
+                    name: name.to_owned(),
+                    at,
+                }),
             });
         }
         let first = self.sum()?;
@@ -456,6 +501,7 @@ mod tests {
         for (text, at, found) in [
             ("", 0..0, "the end of the expression"),
             ("1 +", 3..3, "the end of the expression"),
+            ("1 + 'a b", 4..8, "a name after ' without an end"),
             ("1 + * 2", 4..5, "'*'"),
             ("(1 + 2", 6..6, "the end of the expression"),
             ("2 L", 2..3, "'L'"),

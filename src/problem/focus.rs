@@ -2,6 +2,7 @@
 
 use super::{Constraint, Objective, Problem, read};
 use crate::lower::{Lowering, Seen};
+use std::sync::Arc;
 
 /// The parts of a problem's scenes that are kept.
 #[derive(Clone, Debug)]
@@ -23,16 +24,19 @@ impl Problem {
             return None;
         }
         let scene = self.unlowered_scene::<f64>(&self.start());
-        let seen = Seen::find(&scene, asked);
+        let of_scene = self.composition.of_scene(asked);
+        if of_scene.is_empty() {
+            return None;
+        }
+        let seen = Seen::find(&scene, &of_scene);
         let all_bodies = seen.keeps_all(&scene.model);
         if all_bodies && seen.functions.len() == scene.functions.len() {
             return None;
         }
-        let number = |old: usize| seen.functions.binary_search(&old).ok();
-        let names = seen
-            .functions
-            .iter()
-            .map(|&f| self.function_names[f].clone());
+        let (composition, expressions) = self.composition.focused(&seen.functions, asked);
+        let kept: Vec<usize> = seen.functions.iter().copied().chain(expressions).collect();
+        let number = |old: usize| kept.binary_search(&old).ok();
+        let names = kept.iter().map(|&f| self.function_names[f].clone());
         let objective = self.objective.and_then(|objective| {
             number(objective.function).map(|function| Objective {
                 function,
@@ -49,6 +53,7 @@ impl Problem {
             function_names: names.collect(),
             objective,
             constraints: constraints.collect(),
+            composition: Arc::new(composition),
             ..self.clone()
         };
         focused.focus = Some(Focus {

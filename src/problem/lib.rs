@@ -8,6 +8,8 @@ mod beam;
 mod bounds;
 mod check;
 mod combined;
+mod composed;
+mod composing;
 mod derived;
 mod drawing;
 mod elastic_drawing;
@@ -47,6 +49,7 @@ mod statics;
 pub mod structure;
 mod syntax;
 mod text;
+mod unit;
 mod units;
 mod variables;
 mod windows;
@@ -56,6 +59,7 @@ use flexbody_mathematics::math;
 use flexbody_mechanics::{functions, integrate, lower, model, structures, system};
 use flexbody_optimiser as optimiser;
 
+pub use composed::{Composed, Composition, Partials};
 use derived::Derived;
 pub use drawing::{BarrierLine, Drawing, Outline};
 pub use elastic_drawing::{DeformedLine, ElasticPoint, Trace};
@@ -180,13 +184,13 @@ pub struct Problem {
     pub variables: Vec<Variable>,
     /// The function that is optimised, if any. Without an objective, a file with constraints and
     /// variables requests the feasible design nearest to its own: the objective is then the last
-    /// function, Σ ((x − x0)/scale)².
+    /// function of the scene, Σ ((x − x0)/scale)².
     pub objective: Option<Objective>,
     /// x0, if the file has no objective.
     nearest_to: Option<Vec<f64>>,
     /// Constraints in the order of the file.
     pub constraints: Vec<Constraint>,
-    /// Names of the functions in the order of the file and of [`Scene::functions`].
+    /// Names of the functions in the order of the file and of [`Scene::functions`], then of those that expressions give.
     pub function_names: Vec<String>,
     /// Settings of the optimiser.
     pub optimiser: OptimiserSettings,
@@ -208,6 +212,8 @@ pub struct Problem {
     pub focus: Option<Focus>,
     /// Numbers that expressions give.
     derived: Derived,
+    /// Functions that expressions of other functions give.
+    pub composition: Arc<Composition>,
     /// Structures under load cases; then nothing moves, and there are no scenes.
     pub statics: Option<Arc<Statics>>,
 }
@@ -254,7 +260,7 @@ impl Problem {
         &self.variables
     }
 
-    /// Names of the functions in the order of the file.
+    /// Names of the functions in the order of the file, those that expressions give after the others.
     pub fn functions(&self) -> &[String] {
         &self.function_names
     }
@@ -280,14 +286,36 @@ impl Problem {
         }
     }
 
-    /// SI unit of the function `index`.
+    /// SI unit of the function `index`; empty if that of an expression is not known.
     ///
     /// # Panics
     /// If there is no such function.
     pub fn function_unit(&self, index: usize) -> String {
+        if self.composition.gives(index) {
+            return self.composition.list[index - self.composition.first]
+                .unit
+                .clone();
+        }
         match &self.statics {
             Some(statics) => statics.functions[index].unit().to_owned(),
             None => self.scene(&self.start()).functions[index].unit(),
+        }
+    }
+
+    /// SI units of the functions of the scene.
+    fn units_of_scene(&self) -> Vec<String> {
+        match &self.statics {
+            Some(statics) => (statics.functions.iter())
+                .map(|own| own.unit().to_owned())
+                .collect(),
+            None => {
+                let scene = self.unlowered_scene(&self.start());
+                scene
+                    .functions
+                    .iter()
+                    .map(crate::functions::Function::unit)
+                    .collect()
+            }
         }
     }
 

@@ -2,6 +2,7 @@
 
 use super::bounds;
 use super::check::check;
+use super::composing::{Composing, strip};
 use super::derived::{Derived, Expressions};
 use super::elements;
 use super::fault::Faults;
@@ -31,11 +32,13 @@ use crate::lower::{self, Lowering};
 use crate::math::Dual;
 use crate::model::Model;
 use crate::optimiser::Method;
+use crate::schema::functions::WhichFunction;
 use crate::schema::{self, Document};
 use crate::structures::quality::MeshFault;
 use crate::system::redundancy;
 use serde_json::Value;
 use sha2::{Digest, Sha256};
+use std::collections::HashMap;
 use std::io::ErrorKind;
 use std::path::Path;
 use std::sync::Arc;
@@ -135,6 +138,15 @@ pub(super) fn parse(written: &str, file: &str, overrides: &[Override]) -> Result
         false => String::new(),
     };
     findings.extend(check(&written, &damage));
+    let parameters = document["parameters"].as_object().cloned();
+    let composing = match Composing::read(&written, (parameters.as_ref(), &source), &damage) {
+        Ok(composing) => composing,
+        Err(wrong) => {
+            findings.extend(wrong);
+            Composing::default()
+        }
+    };
+    strip(&mut written);
     let (variables, wrong) = variables(&written, (&document, &structure), &|path| {
         expressions.gives(path)
     });
@@ -160,13 +172,19 @@ pub(super) fn parse(written: &str, file: &str, overrides: &[Override]) -> Result
     let order = placement_order(&written).expect("a checked document has no circle of places");
     match deserialise(&sound) {
         Ok(mut bound) => {
+            strip(&mut bound);
             modal::share(&written, &mut bound);
             elements::share(&written, &mut bound);
             let document = original.unwrap_or(document);
-            let mut problem = problem(document, (bound, &content), order, variables);
+            let mut problem = problem(document, (bound, &content), order, variables, &composing);
             problem.derived = derived;
+            let first = problem.function_names.len() - composing.names().count();
+            let names = (&problem.function_names[..], first);
+            let own = composing.composition(names, parameters.as_ref(), &problem.derived);
+            problem.composition = Arc::new(own);
             if !problem.written.structures.is_empty() {
-                return match of_structures(&mut problem) {
+                let done = of_structures(&mut problem);
+                return match done.and_then(|()| give_units(&mut problem, &composing, &source)) {
                     Ok(()) => Ok(problem),
                     Err(findings) => faults(findings),
                 };
@@ -194,13 +212,36 @@ pub(super) fn parse(written: &str, file: &str, overrides: &[Override]) -> Result
                     problem.lowering = Some(lowering(&problem));
                     match without_inertia(&problem) {
                         Some(finding) => faults(vec![finding]),
-                        None => Ok(problem),
+                        None => match give_units(&mut problem, &composing, &source) {
+                            Ok(()) => Ok(problem),
+                            Err(findings) => faults(findings),
+                        },
                     }
                 }
             }
         }
         Err(finding) => faults(vec![finding]),
     }
+}
+
+/// Gives expressions of functions their units.
+fn give_units(
+    problem: &mut Problem,
+    composing: &Composing,
+    source: &Source,
+) -> Result<(), Vec<Finding>> {
+    if problem.composition.list.is_empty() {
+        return Ok(());
+    }
+    let names = problem.function_names[..problem.composition.first].iter();
+    let own = names.zip(problem.units_of_scene());
+    let known: HashMap<&str, String> = (own.map(|(name, unit)| (name.as_str(), unit))).collect();
+    let units = composing.units(|name| known.get(name).cloned(), source)?;
+    let composition = Arc::make_mut(&mut problem.composition);
+    for (own, unit) in composition.list.iter_mut().zip(units) {
+        own.unit = unit;
+    }
+    Ok(())
 }
 
 /// Completes a problem of structures, or reports the faults of their meshes and supports.
@@ -333,13 +374,32 @@ fn problem(
     (written, content): (Document, &str),
     order: Vec<usize>,
     variables: Vec<super::Variable>,
+    composing: &Composing,
 ) -> Problem {
-    let function = |name: &str| {
-        written
-            .functions
-            .get_index_of(name)
-            .expect("names are checked before")
-    };
+    let mut function_names: Vec<String> = written.functions.keys().cloned().collect();
+    let feasible = written.objective.is_none();
+    let feasible = feasible && !written.constraints.is_empty() && !variables.is_empty();
+    let nearest_to = feasible.then(|| {
+        let mut name = NEAREST.to_owned();
+        while function_names
+            .iter()
+            .chain(composing.names())
+            .any(|own| *own == name)
+        {
+            name.push('\'');
+        }
+        function_names.push(name);
+        variables.iter().map(|variable| variable.start).collect()
+    });
+    let nearest = nearest_to.as_ref().map(|_| Objective {
+        function: function_names.len() - 1,
+        sense: Sense::Minimise,
+    });
+    function_names.extend(composing.names().cloned());
+    let numbers: HashMap<&str, usize> = (function_names.iter().enumerate())
+        .map(|(f, name)| (name.as_str(), f))
+        .collect();
+    let function = |of: &WhichFunction| numbers[composing.name(of)];
     let objective = written.objective.as_ref().map(|objective| {
         let (name, sense) = match objective {
             schema::Objective::Minimise(name) => (name, Sense::Minimise),
@@ -361,20 +421,6 @@ fn problem(
         })
         .collect();
     let hash = Sha256::digest(document.to_string() + content);
-    let mut function_names: Vec<String> = written.functions.keys().cloned().collect();
-    let feasible = objective.is_none() && !written.constraints.is_empty() && !variables.is_empty();
-    let nearest_to = feasible.then(|| {
-        let mut name = NEAREST.to_owned();
-        while function_names.contains(&name) {
-            name.push('\'');
-        }
-        function_names.push(name);
-        variables.iter().map(|variable| variable.start).collect()
-    });
-    let nearest = nearest_to.as_ref().map(|_| Objective {
-        function: function_names.len() - 1,
-        sense: Sense::Minimise,
-    });
     Problem {
         name: written.name.clone(),
         simulation: simulation(written.simulation.as_ref(), usual_tolerance(&written)),
@@ -407,6 +453,7 @@ fn problem(
         left_out: Vec::new(),
         lowering: None,
         derived: Derived::default(),
+        composition: Arc::default(),
         focus: None,
         statics: None,
     }

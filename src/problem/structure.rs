@@ -95,7 +95,7 @@ impl<'a> Walker<'a> {
         let expected = self.wanted(schema);
         let hint = match value {
             Value::Null => Some("leave the key out if it is not wanted".to_owned()),
-            Value::Array(items) if expected == "a text" => match &items[..] {
+            Value::Array(items) if expected.starts_with("a text") => match &items[..] {
                 [Value::String(only)] => Some(format!("write \"{only}\" without brackets")),
                 _ => Some("give each its own entry".to_owned()),
             },

@@ -82,6 +82,7 @@ fn exact(problem: &Problem) -> Vec<Vec<Exact>> {
             x: x.clone(),
             scene: scene.clone(),
             run,
+            composition: problem.composition.clone(),
         };
         let (found, _) = at.derivatives(problem, &all).expect("regular");
         let value = |f: usize| {

@@ -26,6 +26,7 @@ pub mod finite_elements;
 mod fixed_steps;
 mod flexible_families;
 mod flexible_scenes;
+mod function_expressions;
 mod held_edges;
 mod last_modes;
 mod lateral;

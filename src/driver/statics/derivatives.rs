@@ -1,6 +1,7 @@
 //! Exact derivatives of functions of structures in the design variables.
 
 use super::{StaticDesign, StaticsFailure, of_cases, of_modes};
+use crate::composed;
 use crate::evaluate::Derivative;
 use crate::integrate::WorkCounts;
 use crate::problem::{Asked, Problem};
@@ -74,7 +75,7 @@ impl StaticDesign {
             false => By::Everything,
         };
         let mut counts = WorkCounts::default();
-        let mut distinct = which.to_vec();
+        let mut distinct = self.composition.of_scene(which).into_owned();
         distinct.sort_unstable();
         distinct.dedup();
         let pulled_back = |by: &Gradient| -> Vec<Derivative> {
@@ -103,8 +104,11 @@ impl StaticDesign {
             let pairs = some.iter().zip(&found);
             all.extend(pairs.map(|(&(f, _), by)| (f, pulled_back(by))));
         }
-        let found = which.iter().map(|f| all[f].clone());
-        Ok((found.collect(), counts))
+        let one = |&f: &usize| match self.composition.gives(f) {
+            true => composed::derivatives(&self.partials(f), &|g| &all[&g][..]),
+            false => all[&f].clone(),
+        };
+        Ok((which.iter().map(one).collect(), counts))
     }
 }
 

@@ -12,7 +12,7 @@
 //! and is subtracted.
 
 use super::{StaticDesign, StaticValue, StaticsFailure};
-use crate::error::{Estimate, FunctionError};
+use crate::estimate::{Estimate, FunctionError, with_expressions};
 use crate::problem::{Asked, Problem, available_memory};
 use crate::report::size;
 use crate::structures::functions::{Aggregate, Function};
@@ -25,6 +25,18 @@ use std::sync::Arc;
 /// # Errors
 /// [`StaticsFailure`] if the finer mesh has no solution.
 pub fn estimate(
+    problem: &Problem,
+    at: &StaticDesign,
+    which: &[usize],
+    gradients: bool,
+) -> Result<Vec<FunctionError>, StaticsFailure> {
+    with_expressions((problem, &at.x), which, |which| {
+        of_structures(problem, at, which, gradients)
+    })
+}
+
+/// Those of functions of the structures.
+fn of_structures(
     problem: &Problem,
     at: &StaticDesign,
     which: &[usize],
@@ -106,8 +118,13 @@ pub fn doubts(problem: &Problem, at: &StaticDesign, which: &[usize]) -> Option<S
         .map(|case| case.iter().any(at_point))
         .collect();
     let doubtful = |&&f: &&usize| {
-        let function = &at.statics.functions[f];
-        super::cases_of(function).iter().any(|&case| singular[case])
+        let needed = at
+            .composition
+            .of_scene(std::slice::from_ref(&f))
+            .into_owned();
+        let functions = needed.into_iter().map(|g| &at.statics.functions[g]);
+        let mut cases = functions.flat_map(super::cases_of);
+        cases.any(|&case| singular[case])
     };
     let names: Vec<String> = (which.iter().filter(doubtful))
         .map(|&f| format!("\"{}\"", problem.function_names[f]))
@@ -148,6 +165,11 @@ pub fn refined(
 /// The value on a finer mesh as it would be with as many Gauss points as on the coarse one.
 pub fn comparable(coarse: &StaticDesign, fine: &StaticDesign, f: usize) -> StaticValue {
     let mut value = fine.function(f);
+    if fine.composition.gives(f) {
+        let of = |g: usize| comparable(coarse, fine, g).value;
+        value.value = fine.composition.value(f, &fine.x, &of);
+        return value;
+    }
     if let Asked::OfSolutions(Function::Stress {
         faces,
         rho,

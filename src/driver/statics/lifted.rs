@@ -9,6 +9,7 @@ use crate::structures::functions::Solved;
 use crate::structures::lifted::eigenvalue_rates;
 use crate::structures::modes::{ModalFailure, Modes};
 use crate::structures::statics::StaticFailure;
+use std::collections::BTreeMap;
 use std::f64::consts::PI;
 
 /// Derivatives of the functions `which` of a solved design along a direction, Im f(x + i h d) / h. Matrices
@@ -27,7 +28,8 @@ pub(super) fn along(
     let scene: StaticScene<Complex64> = problem.static_scene(statics, &x);
     let real = &at.scene.structure;
     let mut own = at.copied_workspace()?;
-    let mut needed: Vec<usize> = which
+    let functions = at.composition.of_scene(which).into_owned();
+    let mut needed: Vec<usize> = functions
         .iter()
         .flat_map(|&f| cases_of(&statics.functions[f]))
         .copied()
@@ -49,8 +51,8 @@ pub(super) fn along(
             failure: unknown.into(),
         })?;
     }
-    let mut all = Vec::with_capacity(which.len());
-    for &f in which {
+    let mut rates: BTreeMap<usize, f64> = BTreeMap::new();
+    for f in functions {
         let value = match &statics.functions[f] {
             Asked::DistanceFromStart => problem.distance_from_start(&x).infinitesimal(),
             Asked::OfSolutions(function) => {
@@ -82,10 +84,15 @@ pub(super) fn along(
                 weights.iter().zip(&rates).map(|(w, rate)| w * rate).sum()
             }
         };
-        all.push(value / COMPLEX_STEP);
+        rates.insert(f, value);
     }
     at.statics.workspaces.give(own);
-    Ok(all)
+    let of = |g: usize| Complex64::new(at.function(g).value, rates[&g]);
+    let rate = |&f: &usize| match at.composition.gives(f) {
+        true => at.composition.value(f, &x, &of).im,
+        false => rates[&f],
+    };
+    Ok(which.iter().map(|f| rate(f) / COMPLEX_STEP).collect())
 }
 
 /// Rates of frequencies from those of eigenvalues, f = √λ / 2π.

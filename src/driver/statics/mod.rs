@@ -8,9 +8,10 @@ mod lifted;
 mod limits;
 pub mod precision;
 
+use crate::composed;
 use crate::integrate::WorkCounts;
 use crate::math::soft_max::{Smoothed, smoothed};
-use crate::problem::{Asked, Problem, StaticScene, Statics, Workspace};
+use crate::problem::{Asked, Composition, Partials, Problem, StaticScene, Statics, Workspace};
 use crate::structures::functions::{Function, Peak, Solved};
 use crate::structures::modes::{
     LowestFrequency, ModalFailure, ModalProblem, Modes, lowest_frequency, lowest_of,
@@ -92,6 +93,8 @@ pub struct StaticDesign {
     pub solutions: Vec<Vec<f64>>,
     /// The lowest modes, if single frequencies are requested.
     pub modes: Option<Modes>,
+    /// Functions that expressions of others give.
+    pub composition: Arc<Composition>,
     lowest: Vec<Option<LowestFrequency>>,
     values: Vec<Option<StaticValue>>,
     workspace: Mutex<Workspace>,
@@ -179,8 +182,9 @@ impl StaticDesign {
         if let Some(fault) = scene.structure.property_fault() {
             return Err(fault.into());
         }
-        let all: Vec<usize> = (0..statics.functions.len()).collect();
-        let which = asked.unwrap_or(&all);
+        let all: Vec<usize> = (0..problem.function_names.len()).collect();
+        let (asked_of, composition) = (asked.unwrap_or(&all), &problem.composition);
+        let which = &composition.of_scene(asked_of)[..];
         let needed = which.iter().flat_map(|&f| cases_of(&statics.functions[f]));
         let mut needed: Vec<usize> = match asked {
             Some(_) => needed.copied().collect(),
@@ -192,6 +196,7 @@ impl StaticDesign {
             x: x.to_vec(),
             solutions: vec![Vec::new(); statics.cases.len()],
             modes: None,
+            composition: composition.clone(),
             lowest: vec![None; statics.functions.len()],
             values: vec![None; statics.functions.len()],
             workspace: Mutex::new(statics.workspaces.take()),
@@ -353,11 +358,28 @@ impl StaticDesign {
     /// # Panics
     /// If it was not requested.
     pub fn function(&self, f: usize) -> StaticValue {
-        self.values[f].expect("the function was asked for")
+        let of = |g: usize| self.values[g].expect("the function was asked for");
+        match self.composition.gives(f) {
+            false => of(f),
+            true => StaticValue {
+                value: self.composition.value(f, &self.x, &|g| of(g).value),
+                peak: None,
+            },
+        }
+    }
+
+    /// Derivatives of an expression by the functions and numbers that it names.
+    pub fn partials(&self, f: usize) -> Partials {
+        let of = |g: usize| self.function(g).value;
+        self.composition.partials(f, &self.x, &of)
     }
 
     /// What a requested function stands for, if it is an aggregate.
     pub fn smoothed(&self, f: usize) -> Option<Smoothed> {
+        if self.composition.gives(f) {
+            let one = |g: usize| (self.smoothed(g), self.function(g).value);
+            return composed::smoothed(&self.composition, f, &self.x, &one);
+        }
         let found = self.values[f]?;
         match &self.statics.functions[f] {
             Asked::LowestFrequency(rho) => {

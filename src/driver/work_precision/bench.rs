@@ -46,8 +46,10 @@ impl<'a> Bench<'a> {
 
     /// Whether the function is a sum over the motion, so that its gradient needs samples.
     pub fn sums(&self) -> bool {
-        self.function
-            .is_some_and(|f| looks_at_the_whole(&self.scene.functions[f]))
+        let which: Vec<usize> = self.function.into_iter().collect();
+        let of_scene = self.problem.composition.of_scene(&which);
+        let mut all = of_scene.iter().map(|&f| &self.scene.functions[f]);
+        all.any(looks_at_the_whole)
     }
 
     /// Gradient of the function in the design variables.
@@ -155,6 +157,7 @@ impl<'a> Bench<'a> {
             x: self.x.to_vec(),
             scene: self.scene.clone(),
             run,
+            composition: self.problem.composition.clone(),
         }
     }
 }

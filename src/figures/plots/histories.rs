@@ -74,7 +74,7 @@ pub fn histories(rows: &[Row]) -> Result<String, FigureError> {
     let left = room_left(&axes);
     let column = |i: usize| left + i as f64 * (width + GAP);
     let full = column(designs.len()) - GAP + 18.0;
-    let legend = Legend::new(entries(first), full - left - 18.0);
+    let legend = Legend::new(entries(first, rows.len()), full - left - 18.0);
     let titled = designs.iter().any(|design| !design.title.is_empty());
     let top = 6.0 + legend.height() + if titled { 24.0 } else { 6.0 };
     let below = rows.len() as f64 * (height + BETWEEN) - BETWEEN;
@@ -121,15 +121,23 @@ fn look_of_limit(limit: usize) -> (RGBColor, usize) {
     (BLACK, limit + 1)
 }
 
-fn entries(design: &History) -> Vec<(Key, String)> {
+/// The keys of the curves and limits. The limits of several rows have their values at their axes.
+fn entries(design: &History, rows: usize) -> Vec<(Key, String)> {
     let key = |(color, pattern): (RGBColor, usize)| Key::Pattern(color, pattern);
     let curves = design.curves.iter().enumerate();
     let mut all: Vec<(Key, String)> = curves
         .map(|(k, (name, _))| (key(look(k)), name.clone()))
         .collect();
+    if rows > 1 && !design.limits.is_empty() {
+        all.push((key(look_of_limit(0)), "limits".to_owned()));
+        return all;
+    }
     for (k, limit) in design.limits.iter().enumerate() {
         let value = significant(limit.value, 4);
-        let text = format!("limit of {value} {}:", limit.unit);
+        let text = match limit.unit {
+            "" => format!("limit of {value}"),
+            unit => format!("limit of {value} {unit}:"),
+        };
         all.push((key(look_of_limit(k)), text));
         all.extend(limit.of.iter().map(|of| (Key::Note, of.clone())));
     }

@@ -1,228 +1,198 @@
-//! SI units of products and quotients of quantities.
+//! SI units of products, quotients and powers.
 
 use std::fmt;
 
-/// Base units, in the order of their exponents.
-const BASES: [&str; 5] = ["kg", "m", "s", "rad", "K"];
-/// Derived units that texts may use, with their exponents.
-const DERIVED: [(&str, [i8; 5]); 5] = [
-    ("N", [1, 1, -2, 0, 0]),
-    ("J", [1, 2, -2, 0, 0]),
-    ("W", [1, 2, -3, 0, 0]),
-    ("Pa", [1, -1, -2, 0, 0]),
-    ("Hz", [0, 0, -1, 0, 0]),
-];
-/// Texts of dimensions that have a usual one beside the product of bases.
-const USUAL: [(&str, [i8; 5]); 9] = [
-    ("N", [1, 1, -2, 0, 0]),
-    ("J", [1, 2, -2, 0, 0]),
-    ("W", [1, 2, -3, 0, 0]),
-    ("Pa", [1, -1, -2, 0, 0]),
-    ("N/m", [1, 0, -2, 0, 0]),
-    ("J s", [1, 2, -1, 0, 0]),
-    ("N²", [2, 2, -4, 0, 0]),
-    ("N² m²", [2, 4, -4, 0, 0]),
-    ("Pa²", [2, -2, -4, 0, 0]),
-];
-
-/// A product of powers of base units.
-#[derive(Clone, Debug, PartialEq, Eq)]
+/// A product of powers of symbols, such as kg m²/s.
+#[derive(Clone, Debug, Default, PartialEq)]
 pub struct Unit {
-    /// Exponents of the base units; `None` if it is not known.
-    exponents: Option<[i8; 5]>,
-    /// The text it was made from, which stays as long as it is not combined.
-    text: Option<String>,
+    /// Each symbol once, with an exponent that is not zero.
+    powers: Vec<(String, f64)>,
 }
+
+/// Symbols by kilogram, metre and second.
+const SYMBOLS: [(&str, [f64; 3]); 9] = [
+    ("kg", [1.0, 0.0, 0.0]),
+    ("m", [0.0, 1.0, 0.0]),
+    ("s", [0.0, 0.0, 1.0]),
+    ("rad", [0.0, 0.0, 0.0]),
+    ("N", [1.0, 1.0, -2.0]),
+    ("J", [1.0, 2.0, -2.0]),
+    ("W", [1.0, 2.0, -3.0]),
+    ("Pa", [1.0, -1.0, -2.0]),
+    ("Hz", [0.0, 0.0, -1.0]),
+];
+/// Powers from 2 on.
+const POWERS: [char; 5] = ['²', '³', '⁴', '⁵', '⁶'];
+/// Dimensions with a usual text beside the product of base units.
+const USUAL: [(&str, [f64; 3]); 6] = [
+    ("N", [1.0, 1.0, -2.0]),
+    ("J", [1.0, 2.0, -2.0]),
+    ("W", [1.0, 2.0, -3.0]),
+    ("Pa", [1.0, -1.0, -2.0]),
+    ("N/m", [1.0, 0.0, -2.0]),
+    ("J s", [1.0, 2.0, -1.0]),
+];
+/// Exponents that differ by less are the same.
+const SAME: f64 = 1e-9;
 
 impl Unit {
-    /// That of a number.
-    pub fn one() -> Self {
-        Self::of([0; 5])
-    }
-
     /// That of time.
     pub fn second() -> Self {
-        Self::of([0, 0, 1, 0, 0])
+        let powers = vec![("s".to_owned(), 1.0)];
+        Self { powers }
     }
 
-    /// A unit that is not known.
-    pub fn unknown() -> Self {
-        Self {
-            exponents: None,
-            text: None,
-        }
-    }
-
-    fn of(exponents: [i8; 5]) -> Self {
-        Self {
-            exponents: Some(exponents),
-            text: None,
-        }
-    }
-
-    /// Reads a text such as "kg m²/s²", "N m/rad" or "1/(m s)".
-    pub fn parse(text: &str) -> Self {
-        Self {
-            exponents: exponents(text),
-            text: Some(text.to_owned()),
-        }
-    }
-
-    /// Whether it is known.
-    pub fn is_known(&self) -> bool {
-        self.exponents.is_some()
-    }
-
-    /// Whether both are known and of the same dimension. Angles are numbers.
-    pub fn is_like(&self, other: &Self) -> bool {
-        let plain = |own: &Self| own.exponents.map(|[kg, m, s, _, k]| [kg, m, s, k]);
-        self.is_known() && plain(self) == plain(other)
-    }
-
-    /// Its product with a power of another unit.
-    pub fn times(&self, other: &Self, power: i8) -> Self {
-        let both = self.exponents.zip(other.exponents);
-        Self {
-            exponents: both.map(|(own, by)| std::array::from_fn(|i| own[i] + power * by[i])),
-            text: None,
-        }
-    }
-}
-
-/// The exponents of a text; `None` if it has other symbols.
-fn exponents(text: &str) -> Option<[i8; 5]> {
-    let mut all = [0; 5];
-    let mut sign = 1;
-    let mut symbol = String::new();
-    let mut power = String::new();
-    let mut brackets = 0;
-    for c in text.chars().chain([' ']) {
-        match c {
-            '¹' | '²' | '³' | '⁴' | '⁵' | '⁶' => power.push(c),
-            ' ' | '/' | '(' | ')' => {
-                add(&mut all, &symbol, &power, sign)?;
-                symbol.clear();
-                power.clear();
-                match c {
-                    '/' => sign = -1,
-                    '(' => brackets += 1,
-                    ')' => {
-                        brackets -= 1;
-                        sign = 1;
-                    }
-                    _ => {}
-                }
-            }
-            _ if !power.is_empty() => {
-                add(&mut all, &symbol, &power, sign)?;
-                symbol = c.to_string();
-                power.clear();
-            }
-            _ => symbol.push(c),
-        }
-    }
-    (brackets == 0).then_some(all)
-}
-
-/// Adds the power of a symbol.
-fn add(all: &mut [i8; 5], symbol: &str, power: &str, sign: i8) -> Option<()> {
-    if symbol.is_empty() || symbol == "1" {
-        return Some(());
-    }
-    let power = match power.chars().next() {
-        None => 1,
-        Some(c) => "¹²³⁴⁵⁶".chars().position(|own| own == c)? as i8 + 1,
-    };
-    let base = BASES.iter().position(|base| *base == symbol);
-    let derived = DERIVED.iter().find(|(name, _)| *name == symbol);
-    match (base, derived) {
-        (Some(base), _) => all[base] += sign * power,
-        (None, Some((_, own))) => {
-            for (sum, own) in all.iter_mut().zip(own) {
-                *sum += sign * power * own;
+    /// Reads a unit such as "kg m²/s" or "1/(m s)"; `None` if it has other symbols.
+    pub fn read(text: &str) -> Option<Self> {
+        let mut unit = Self::default();
+        for (k, part) in text.split('/').enumerate() {
+            let sign = if k == 0 { 1.0 } else { -1.0 };
+            let part = part.trim_start_matches('(').trim_end_matches(')');
+            for symbol in part.split_whitespace().filter(|own| *own != "1") {
+                let last = symbol.chars().last()?;
+                let (symbol, power) = match POWERS.iter().position(|own| *own == last) {
+                    Some(at) => (symbol.trim_end_matches(last), at as f64 + 2.0),
+                    None => (symbol, 1.0),
+                };
+                SYMBOLS.iter().find(|(own, _)| *own == symbol)?;
+                unit.include(symbol, sign * power);
             }
         }
-        (None, None) => return None,
+        Some(unit)
     }
-    Some(())
+
+    /// The usual text of its dimension: W for N m/s, and the product of base units if there is no usual one. An angle is a
+    /// number beside other units.
+    pub fn usual(&self) -> String {
+        let dimension = self.dimension();
+        let is_like =
+            |own: &[f64; 3]| (own.iter().zip(dimension)).all(|(a, b)| (a - b).abs() <= SAME);
+        let angles = self.powers.iter().find(|(own, _)| own == "rad");
+        if let Some((text, _)) = USUAL.iter().find(|(_, own)| is_like(own)) {
+            return (*text).to_owned();
+        }
+        let mut bases = Self::default();
+        for (name, power) in ["kg", "m", "s"].into_iter().zip(dimension) {
+            bases.include(name, power);
+        }
+        if let (Some((_, power)), true) = (angles, dimension[..2] == [0.0, 0.0]) {
+            bases.powers.insert(0, ("rad".to_owned(), *power));
+        }
+        bases.to_string()
+    }
+
+    fn include(&mut self, symbol: &str, power: f64) {
+        match self.powers.iter_mut().find(|(own, _)| own == symbol) {
+            Some((_, own)) => *own += power,
+            None => self.powers.push((symbol.to_owned(), power)),
+        }
+        self.powers.retain(|(_, power)| power.abs() > SAME);
+    }
+
+    /// Its product with another unit to the power ±1.
+    pub fn times(&self, other: &Self, sign: f64) -> Self {
+        let mut product = self.clone();
+        for (symbol, power) in &other.powers {
+            product.include(symbol, sign * power);
+        }
+        product
+    }
+
+    /// Its power.
+    pub fn power(&self, exponent: f64) -> Self {
+        let mut unit = Self::default();
+        for (symbol, power) in &self.powers {
+            unit.include(symbol, power * exponent);
+        }
+        unit
+    }
+
+    /// Exponents of kilogram, metre and second.
+    fn dimension(&self) -> [f64; 3] {
+        let mut sum = [0.0; 3];
+        for (symbol, power) in &self.powers {
+            let own = SYMBOLS.iter().find(|(own, _)| own == symbol);
+            for (sum, own) in sum.iter_mut().zip(own.map_or([0.0; 3], |own| own.1)) {
+                *sum += own * power;
+            }
+        }
+        sum
+    }
+
+    /// Whether both have the same dimension. Angles are numbers.
+    pub fn is_as(&self, other: &Self) -> bool {
+        let pairs = self.dimension().into_iter().zip(other.dimension());
+        pairs.into_iter().all(|(a, b)| (a - b).abs() <= SAME)
+    }
+
+    /// Whether it is that of a number.
+    pub fn is_number(&self) -> bool {
+        self.is_as(&Self::default())
+    }
 }
 
 impl fmt::Display for Unit {
-    fn fmt(&self, f: &mut fmt::Formatter) -> fmt::Result {
-        if let Some(text) = &self.text {
-            return f.write_str(text);
-        }
-        let Some(mut own) = self.exponents else {
-            return f.write_str("?");
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        let one = |(symbol, power): &(String, f64)| match power.abs() {
+            1.0 => symbol.clone(),
+            2.0 | 3.0 | 4.0 | 5.0 | 6.0 => format!("{symbol}{}", POWERS[power.abs() as usize - 2]),
+            other => format!("{symbol}^{other}"),
         };
-        // An angle is a number beside other units; alone it is told.
-        if own[..2].iter().any(|&power| power != 0) {
-            own[3] = 0;
-        }
-        if let Some((text, _)) = USUAL.iter().find(|(_, usual)| *usual == own) {
-            return f.write_str(text);
-        }
-        let part = |sign: i8| -> Vec<String> {
-            let named = BASES.iter().zip(own).filter(|(_, power)| power * sign > 0);
-            let text = named.map(|(name, power)| match power * sign {
-                1 => (*name).to_owned(),
-                power => format!("{name}{}", superscript(power)),
-            });
-            text.collect()
+        let side = |positive: bool| -> Vec<String> {
+            let own = self.powers.iter().filter(|own| (own.1 > 0.0) == positive);
+            own.map(one).collect()
         };
-        let (above, below) = (part(1), part(-1));
-        let above = match above.is_empty() {
-            true => "1".to_owned(),
-            false => above.join(" "),
-        };
+        let (above, below) = (side(true), side(false));
+        match above.is_empty() {
+            true => f.write_str("1")?,
+            false => f.write_str(&above.join(" "))?,
+        }
         match &below[..] {
-            [] => f.write_str(&above),
-            [only] => write!(f, "{above}/{only}"),
-            many => write!(f, "{above}/({})", many.join(" ")),
+            [] => Ok(()),
+            [one] => write!(f, "/{one}"),
+            all => write!(f, "/({})", all.join(" ")),
         }
     }
-}
-
-fn superscript(power: i8) -> String {
-    let digit = |c: char| "⁰¹²³⁴⁵⁶⁷⁸⁹".chars().nth(c as usize - '0' as usize);
-    power.to_string().chars().filter_map(digit).collect()
 }
 
 #[cfg(test)]
 mod tests {
     use super::Unit;
 
+    fn read(text: &str) -> Unit {
+        Unit::read(text).expect("a unit")
+    }
+
     #[test]
     fn products_have_their_usual_names() {
         let cases = [
-            ("N", "m/s", 1, "W"),
-            ("N m", "rad/s", 1, "W"),
-            ("N m", "N m", 1, "N² m²"),
-            ("m", "m", 1, "m²"),
-            ("m", "m", -1, "1"),
-            ("rad", "s", -1, "rad/s"),
-            ("J", "s", -1, "W"),
-            ("m/s²", "s", -1, "m/s³"),
-            ("kg m²/s", "kg m²", -1, "1/s"),
-            ("W", "kg m", -1, "m/s³"),
-            ("Pa", "m²", 1, "N"),
-            ("1", "m s", -1, "1/(m s)"),
+            ("N", "m/s", 1.0, "W"),
+            ("N m", "rad/s", 1.0, "W"),
+            ("m", "m", 1.0, "m²"),
+            ("m", "m", -1.0, "1"),
+            ("rad", "s", -1.0, "rad/s"),
+            ("J", "s", -1.0, "W"),
+            ("m/s²", "s", -1.0, "m/s³"),
+            ("kg m²/s", "kg m²", -1.0, "1/s"),
+            ("W", "kg m", -1.0, "m/s³"),
+            ("Pa", "m²", 1.0, "N"),
+            ("1", "m s", -1.0, "1/(m s)"),
         ];
-        for (a, b, power, product) in cases {
-            let found = Unit::parse(a).times(&Unit::parse(b), power).to_string();
-            assert_eq!(found, product, "{a} and {b}");
+        for (a, b, sign, product) in cases {
+            assert_eq!(
+                read(a).times(&read(b), sign).usual(),
+                product,
+                "{a} and {b}"
+            );
         }
     }
 
     #[test]
-    fn texts_stay_as_they_are_and_unknown_units_are_told() {
-        assert_eq!(Unit::parse("N m s/rad").to_string(), "N m s/rad");
-        assert!(Unit::parse("N m").is_like(&Unit::parse("J")));
-        assert!(Unit::parse("rad/s").is_like(&Unit::parse("Hz")));
-        assert!(!Unit::parse("N").is_like(&Unit::parse("J")));
-        assert!(!Unit::parse("apples").is_known());
-        assert!(!Unit::unknown().is_like(&Unit::unknown()));
-        let product = Unit::parse("apples").times(&Unit::one(), 1);
-        assert_eq!(product.to_string(), "?");
+    fn units_are_compared_by_their_dimension() {
+        assert!(read("N m").is_as(&read("J")));
+        assert!(read("rad/s").is_as(&read("Hz")));
+        assert!(!read("N").is_as(&read("J")));
+        assert_eq!(read("1/(m s)").to_string(), "1/(m s)");
+        assert_eq!(Unit::read("apples"), None);
     }
 }

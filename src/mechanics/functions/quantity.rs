@@ -85,10 +85,10 @@ impl Operation {
     fn unit(self, of: &[Unit]) -> Unit {
         match self {
             Self::Sum | Self::Difference | Self::Absolute { .. } => of[0].clone(),
-            Self::Product => of.iter().fold(Unit::one(), |all, own| all.times(own, 1)),
-            Self::Quotient => of[0].times(&of[1], -1),
-            Self::Square => of[0].times(&of[0], 1),
-            Self::Rate => of[0].times(&Unit::second(), -1),
+            Self::Product => (of.iter()).fold(Unit::default(), |all, own| all.times(own, 1.0)),
+            Self::Quotient => of[0].times(&of[1], -1.0),
+            Self::Square => of[0].power(2.0),
+            Self::Rate => of[0].times(&Unit::second(), -1.0),
         }
     }
 
@@ -147,13 +147,13 @@ impl<S: Scalar> Quantity<S> {
     pub fn unit(&self) -> String {
         match self {
             Self::Of(instant) => instant.unit().to_owned(),
-            Self::Combined { .. } => self.own_unit().to_string(),
+            Self::Combined { .. } => self.own_unit().usual(),
         }
     }
 
     fn own_unit(&self) -> Unit {
         match self {
-            Self::Of(instant) => Unit::parse(instant.unit()),
+            Self::Of(instant) => Unit::read(instant.unit()).unwrap_or_default(),
             Self::Combined { operation, of } => {
                 let of: Vec<Unit> = of.iter().map(Self::own_unit).collect();
                 operation.unit(&of)
@@ -174,15 +174,15 @@ impl<S: Scalar> Quantity<S> {
         let other = of
             .iter()
             .map(Self::own_unit)
-            .find(|own| !own.is_like(&first))?;
-        Some([first.to_string(), other.to_string()])
+            .find(|own| !own.is_as(&first))?;
+        Some([first.usual(), other.usual()])
     }
 
     /// SI unit of its integral over time.
     pub fn integral_unit(&self) -> String {
         match self {
             Self::Of(instant) => instant.integral_unit(),
-            Self::Combined { .. } => self.own_unit().times(&Unit::second(), 1).to_string(),
+            Self::Combined { .. } => self.own_unit().times(&Unit::second(), 1.0).usual(),
         }
     }
 

@@ -1,13 +1,13 @@
 //! Bodies of finite elements.
 
 use super::Checker;
+use crate::composing::is_wanted;
 use crate::elements::{frame_nodes, prepare};
 use crate::finding::Finding;
 use crate::holds::nodes_of;
 use crate::parts::beams;
 use crate::placement::GROUND;
 use crate::pointer::{advice, join, keys};
-use crate::schema::Objective;
 use crate::schema::elements::{ElementBasis, ElementFrame, Elements, Held};
 use crate::schema::functions::ShellStress;
 use crate::schema::mechanics::Body;
@@ -285,12 +285,7 @@ impl Checker<'_> {
         }
         let keys = keys(pointer);
         let [_, function, ..] = &keys[..] else { return };
-        let wanted = match &self.document.objective {
-            Some(Objective::Minimise(own) | Objective::Maximise(own)) => own == function,
-            None => false,
-        };
-        let mut constraints = self.document.constraints.values();
-        if wanted || constraints.any(|own| own.function == *function) {
+        if is_wanted(self.document, function) {
             let found = format!("\"{name}\", whose \"basis\" is \"rigid\"");
             let expected = "a body that deforms, as the stress of a rigid one is not known";
             self.fault(Finding::new(join(pointer, "body"), found, expected));

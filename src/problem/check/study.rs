@@ -1,6 +1,7 @@
 //! Functions, objective, constraints, and settings of solution and plot.
 
 use super::Checker;
+use crate::composing::references;
 use crate::elements::has_all_nodes;
 use crate::finding::Finding;
 use crate::math::Vec3;
@@ -10,9 +11,11 @@ use crate::pointer::{advice, join};
 use crate::quantities::released;
 use crate::quantity::values;
 use crate::scene::GRAVITY;
-use crate::schema::functions::{Clearance, Component, Function, Gate, Instant, OfMotion, Range};
+use crate::schema::functions::{
+    Clearance, Component, Function, Gate, Instant, OfMotion, Range, WhichFunction,
+};
 use crate::schema::mechanics::Point;
-use crate::schema::{LinearSolver, Method, Objective};
+use crate::schema::{LinearSolver, Method};
 
 /// A direction is horizontal up to this cosine with gravity.
 const HORIZONTAL: f64 = 1e-9;
@@ -30,16 +33,13 @@ impl Checker<'_> {
                 false => self.function(&join("/functions", name), function),
             }
         }
-        if let Some(objective) = &document.objective {
-            let (key, name) = match objective {
-                Objective::Minimise(name) => ("minimise", name),
-                Objective::Maximise(name) => ("maximise", name),
-            };
-            self.function_name(&join("/objective", key), name);
+        for (pointer, of) in references(document) {
+            if let WhichFunction::Named(name) = of {
+                self.function_name(&pointer, name);
+            }
         }
         for (name, constraint) in &document.constraints {
             let pointer = join("/constraints", name);
-            self.function_name(&join(&pointer, "function"), &constraint.function);
             match (constraint.lower, constraint.upper) {
                 (None, None) => {
                     let expected = "\"lower\", \"upper\" or both";
@@ -155,6 +155,10 @@ impl Checker<'_> {
     }
 
     fn function(&mut self, pointer: &str, function: &Function) {
+        // Their names are checked where they are read.
+        if let Function::Expression(_) = function {
+            return;
+        }
         let Some(function) = function.of_motion() else {
             let expected = "a function of a motion, or \"structures\" without a \"simulation\"";
             self.fault(Finding::new(pointer, "a function of structures", expected));

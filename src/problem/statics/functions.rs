@@ -109,6 +109,11 @@ fn of(document: &Document, function: &Written, cuts: usize) -> Asked {
         | Written::MeanAbsolute(_)
         | Written::Value(_)
         | Written::Clearance(_)
-        | Written::Duration => unreachable!("functions of a motion are refused before"),
+        | Written::Duration
+        | Written::Expression(_) => {
+            unreachable!(
+                "functions of a motion are refused before, and expressions are no functions of structures"
+            )
+        }
     })
 }

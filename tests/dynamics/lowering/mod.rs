@@ -45,7 +45,12 @@ fn run(problem: &Problem, settings: &Settings) -> Evaluated {
     let scene = problem.scene::<f64>(&x);
     let run = simulate(&scene.model, scene.duration, settings)
         .unwrap_or_else(|failure| panic!("{}: {failure}", problem.name));
-    Evaluated { x, scene, run }
+    Evaluated {
+        x,
+        scene,
+        run,
+        composition: problem.composition.clone(),
+    }
 }
 
 fn unlowered(problem: &Problem) -> Problem {
