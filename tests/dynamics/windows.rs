@@ -71,7 +71,6 @@ fn quantities(model: &Model<f64>) -> Vec<Quantity<f64>> {
         seen(SeenPart::Velocity, None),
         seen(SeenPart::Distance, None),
         rate(DegreeOfFreedom::Rotation),
-        rate(DegreeOfFreedom::Translation),
         combined(Operation::Rate, vec![acceleration]),
         combined(
             Operation::Product,

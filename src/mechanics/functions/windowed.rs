@@ -12,6 +12,8 @@ use crate::integrate::quadrature::{NODES, WEIGHTS};
 use crate::math::soft_max::{Bound, SoftMax};
 use crate::math::{Dual, Scalar};
 
+/// Fractions of the duration with a smaller distance are one place.
+const BESIDE: f64 = 1e-9;
 /// Most parts of a piece between two samples for an exponential.
 const MOST: f64 = 64.0;
 
@@ -120,7 +122,9 @@ impl<S: Scalar> Span<S> {
         };
         let [low, high] = self.ends.map(|end| end.re());
         let inside = peaks(run, values).into_iter();
-        let inside = inside.filter(|(at, _)| *at > low && *at < high);
+        // An end of the window stands for a sample at the same place: between two equal values the quantity neither
+        // rises nor falls.
+        let inside = inside.filter(|(at, _)| *at > low + BESIDE && *at < high - BESIDE);
         let inside = inside.map(|(_, point)| (point.value, point.of));
         let first = edge(self.ends[0]);
         std::iter::once(first)
