@@ -12,6 +12,7 @@ mod sections;
 mod sets;
 mod structures;
 mod study;
+mod turns;
 mod windows;
 
 use super::finding::Finding;
