@@ -1,25 +1,9 @@
-//! Combined and relative quantities, powers and rates, in a file.
+//! Relative quantities and powers, in a file.
 
-use super::functions::Instant;
 use super::mechanics::Point;
 use crate::quantity::Vector;
 use schemars::JsonSchema;
 use serde::Deserialize;
-
-/// A smooth absolute value.
-#[derive(Clone, Debug, Deserialize, JsonSchema)]
-#[serde(deny_unknown_fields)]
-pub struct Absolute {
-    /// The quantity x.
-    pub of: Box<Instant>,
-    /// Width w of the rounded corner at zero: √(x² + w²) − w, at most w below |x|.
-    #[schemars(extend(
-        "unit" = "unit of the quantity",
-        "exclusiveMinimum" = 0,
-        "design_variable" = "a width says what is asked, not what is built"
-    ))]
-    pub width: f64,
-}
 
 /// A component of a point's motion as seen from another body.
 #[derive(Clone, Debug, Deserialize, JsonSchema)]

@@ -5,6 +5,7 @@ pub mod drives;
 pub mod elements;
 pub mod flexible;
 pub mod functions;
+pub mod instants;
 pub mod joints;
 pub mod loads;
 pub mod measured;

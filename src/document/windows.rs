@@ -1,6 +1,6 @@
 //! Windows of time, and reductions over them, in a file.
 
-use super::functions::Instant;
+use super::instants::Instant;
 use crate::quantity::Quantity;
 use schemars::JsonSchema;
 use serde::Deserialize;

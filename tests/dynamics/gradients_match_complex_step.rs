@@ -142,8 +142,8 @@ pub(super) fn functions(body: usize, gate_body: usize) -> Vec<Function<f64>> {
     ]
 }
 
-/// The derivative of every function in every parameter agrees to 1e-12 of itself, of the largest of its terms or of
-/// the function's largest derivative, whose round-off affects the small ones. Adjoint and complex step
+/// The derivative of every function in every parameter agrees to 1e-12 of itself, of the largest of its terms, of
+/// the function's value or of its largest derivative, whose round-off affects the small ones. Adjoint and complex step
 /// differentiate the same motion.
 fn check(model: &Model<f64>, duration: f64, settings: &Settings) {
     let scene = scene(model, duration);
@@ -204,7 +204,10 @@ pub(super) fn compare_to(
     let adjoint = gradients(scene, &run, &which).expect("differentiates");
     for (f, gradient) in adjoint.gradients.iter().enumerate() {
         let given = gradient.parameters();
-        let scale = exact.iter().fold(1.0_f64, |m, row| m.max(row[f].abs()));
+        let value = scene.functions[f].evaluate(&scene.model, &run).value;
+        let scale = exact
+            .iter()
+            .fold(value.abs().max(1.0), |m, row| m.max(row[f].abs()));
         for (row, direction) in exact.iter().zip(directions) {
             let terms = || given.iter().zip(direction).map(|(g, d)| g * d);
             let sum: f64 = terms().sum();

@@ -118,8 +118,8 @@ fn functions(model: &Model<f64>, duration: f64, first: usize) -> Vec<Function<f6
     let window = |from, to| Some(Window { from, to });
     let windows = [
         window(Edge::At(0.23 * duration), Edge::At(0.71 * duration)),
-        window(Edge::Start, Edge::At(0.5 * duration)),
-        window(Edge::At(0.9 * duration), Edge::End),
+        window(Edge::Start, Edge::At(0.51 * duration)),
+        window(Edge::At(0.91 * duration), Edge::End),
         window(reach(0.01, Some(false)), Edge::End),
         window(Edge::Start, reach(0.02, None)),
         None,
