@@ -29,6 +29,7 @@ from ._part import (
 )
 
 __all__ = [
+    "Body",
     "Shape",
     "Inertia",
     "Beam",
@@ -65,11 +66,16 @@ __all__ = [
     "InterfaceNodes",
     "ModalFrame",
     "ModalDamping",
+    "Surface",
+    "LengthUnit",
+    "BodyPoint",
+    "Between",
     "Place",
     "Point",
     "Location",
     "Turns",
     "Turn",
+    "InDegrees",
     "BodyVelocity",
     "StartOfMotion",
     "Joint",
@@ -93,11 +99,13 @@ __all__ = [
     "VaryingPressure",
     "LineForceInTime",
     "VaryingLineForce",
+    "Drive",
     "Turning",
     "Sliding",
     "TerminalEvent",
     "Quantity",
     "EnergyKind",
+    "PowerOf",
     "CountedFrom",
     "ReactionAxes",
     "Gate",
@@ -113,11 +121,21 @@ __all__ = [
     "Strains",
     "Unknowns",
     "Function",
+    "During",
+    "WindowEnds",
+    "Edge",
+    "Reach",
+    "Over",
+    "Within",
     "Barrier",
     "StressAggregate",
     "StressPer",
+    "WhichFunction",
+    "ExpressionOfFunctions",
     "OptimisationMethod",
     "View",
+    "JointDefaults",
+    "body",
     "shapes",
     "inertia",
     "beam",
@@ -145,6 +163,8 @@ __all__ = [
     "units",
     "modal_frames",
     "modal_damping",
+    "surface",
+    "between",
     "place",
     "turn",
     "body_velocity",
@@ -159,17 +179,32 @@ __all__ = [
     "varying_torques",
     "varying_pressures",
     "varying_line_forces",
+    "drive",
     "turning",
     "sliding",
     "terminal_event",
     "quantities",
+    "power_ofs",
     "gate",
     "methods",
     "case_loads",
     "functions",
+    "window_ends",
+    "reach",
+    "within",
     "barrier",
+    "expression_of_functions",
+    "joint_defaults",
     "MachineKeys",
 ]
+
+
+class Body(Part):
+    """A body: a shape with its mass or density, or an explicit mass, centre of mass and inertia, or a beam or a body
+    of files with elastic coordinates. Made by `body`.
+    """
+
+    __slots__ = ()
 
 
 class Shape(Part):
@@ -361,6 +396,18 @@ class ModalDamping(Part):
     __slots__ = ()
 
 
+class Surface(Part):
+    """A homogeneous solid inside a closed surface of triangles. Its axes are those of the file. Made by `surface`."""
+
+    __slots__ = ()
+
+
+class Between(Part):
+    """A point on the line through two named points of the same body. Made by `between`."""
+
+    __slots__ = ()
+
+
 class Place(Part):
     """Placement of a body: `put` this point of the body `at` that place, with this `turn`. Made by `place`."""
 
@@ -368,7 +415,9 @@ class Place(Part):
 
 
 class Turn(Part):
-    """A rotation by an angle about an axis. Made by `turn`."""
+    """A rotation in one of its forms: an axis with an angle, an axis of the ground with an angle, a sequence of
+    angles about the body's own axes, a quaternion, or a matrix. Made by `turn`.
+    """
 
     __slots__ = ()
 
@@ -445,6 +494,14 @@ class VaryingLineForce(Part):
     __slots__ = ()
 
 
+class Drive(Part):
+    """Prescribed motion of a joint about its axis, along it, or both. It is the motion of the first body relative to
+    the second (ground counts as the second), from the placement. Made by `drive`.
+    """
+
+    __slots__ = ()
+
+
 class Turning(Part):
     """Function of time: an angle. Made by `turning`."""
 
@@ -465,6 +522,12 @@ class TerminalEvent(Part):
 
 class Quantity(Part):
     """A quantity at an instant. Made by `quantities`."""
+
+    __slots__ = ()
+
+
+class PowerOf(Part):
+    """What gives or takes power: a load, or the drive of a joint. Made by `power_ofs`."""
 
     __slots__ = ()
 
@@ -497,8 +560,38 @@ class Function(Part):
     __slots__ = ()
 
 
+class WindowEnds(Part):
+    """The ends of a window. Made by `window_ends`."""
+
+    __slots__ = ()
+
+
+class Reach(Part):
+    """A quantity reaches a value: give one of `reaches`, `rises_to` and `falls_to`. Made by `reach`."""
+
+    __slots__ = ()
+
+
+class Within(Part):
+    """A quantity and a window of time. Made by `within`."""
+
+    __slots__ = ()
+
+
 class Barrier(Part):
     """A barrier across the direction of flight. Made by `barrier`."""
+
+    __slots__ = ()
+
+
+class ExpressionOfFunctions(Part):
+    """An expression of functions. Made by `expression_of_functions`."""
+
+    __slots__ = ()
+
+
+class JointDefaults(Part):
+    """Keys of joints. Made by `joint_defaults`."""
 
     __slots__ = ()
 
@@ -530,6 +623,12 @@ ElementInertia: TypeAlias = Literal["full", "paper"]
 InterfaceNodes: TypeAlias = Union[Integer, Vector]
 """Nodes of an interface."""
 
+LengthUnit: TypeAlias = Literal["m", "cm", "mm", "inch"]
+"""A unit of length."""
+
+BodyPoint: TypeAlias = Union[Vector, Between]
+"""A named point of a body."""
+
 Point: TypeAlias = Union[str, Vector]
 """A point of a body."""
 
@@ -538,6 +637,9 @@ Location: TypeAlias = Union[str, Vector]
 
 Turns: TypeAlias = Union[Turn, Sequence[Turn]]
 """One rotation or several."""
+
+InDegrees: TypeAlias = Union[Real, Vector]
+"""One angle or three, in degrees."""
 
 StartOfMotion: TypeAlias = Literal["given", "equilibrium"]
 """Deformations of flexible bodies at the start."""
@@ -608,17 +710,81 @@ Strains: TypeAlias = Literal["linear", "von_karman"]
 Unknowns: TypeAlias = Literal["five", "six"]
 """Unknowns of a node on a smooth surface."""
 
+During: TypeAlias = Union[Vector, WindowEnds]
+"""A window of time: `[start, end]`, or `{"from": …, "to": …}`."""
+
+Edge: TypeAlias = Union[Real, Reach]
+"""A time, or the first time at which a quantity reaches a value."""
+
+Over: TypeAlias = Union[Within, Quantity]
+"""A quantity, over the whole run or a window of time: the quantity alone, or with `during`."""
+
 StressAggregate: TypeAlias = Literal["ks", "induced_exponential"]
 """A smooth aggregate of stress ratios."""
 
 StressPer: TypeAlias = Literal["thickness"]
 """What has an aggregate of its own."""
 
+WhichFunction: TypeAlias = Union[str, ExpressionOfFunctions]
+"""A function: its name, or an expression of functions."""
+
 OptimisationMethod: TypeAlias = Literal["interior_point", "trust_region", "auto"]
 """An optimisation algorithm."""
 
 View: TypeAlias = Literal["xy", "xz", "yz", "yx", "zx", "zy"]
 """Plane of the view: first axis to the right, second up."""
+
+
+@checked
+def body(
+    *,
+    description: str | None = None,
+    shape: Shape | Literal["point"] | None = None,
+    density: Real | None = None,
+    mass: Real | None = None,
+    centre_of_mass: Vector | None = None,
+    inertia: Inertia | None = None,
+    beam: Beam | None = None,
+    elements: Elements | None = None,
+    modal: Modal | None = None,
+    mass_properties: Surface | None = None,
+    points: Mapping[str, BodyPoint] | None = None,
+    place: Place | None = None,
+    velocity: BodyVelocity | None = None,
+) -> Body:
+    """A body: a shape with its mass or density, or an explicit mass, centre of mass and inertia, or a beam or a body
+    of files with elastic coordinates.
+
+    Parameters
+    ----------
+    description : text, optional
+        Remark for readers of the file.
+    shape : one of `shapes` or "point", optional
+        A homogeneous solid, centred at the origin of the body's axes; it gives the inertia.
+    density : number above 0 [kg/m³], optional
+        Density of the shape, instead of a mass.
+    mass : number above 0 [kg], optional
+        Mass.
+    centre_of_mass : numbers, shape (3,) [m], optional
+        Centre of mass of a body without a shape, from the origin of the body's axes; default 0.
+    inertia : `inertia(…)`, optional
+        Inertia of a body without a shape.
+    beam : `beam(…)`, optional
+        A beam with elastic coordinates, instead of all above.
+    elements : `elements(…)`, optional
+        Shells with elastic coordinates at all their nodes, instead of all above.
+    modal : `modal(…)`, optional
+        A body with elastic coordinates from files of other codes, instead of all above.
+    mass_properties : `surface(…)`, optional
+        Mass, centre of mass and inertia of a solid from its surface, instead of all above.
+    points : numbers, shape (3,) [m] or `between(…)` by name, optional
+        Named points in body axes from their origin (the centre of the shape, the start of a beam).
+    place : `place(…)`, optional
+        Placement at the start; by default its axes are those of ground.
+    velocity : `body_velocity(…)`, optional
+        Its velocity at the start, instead of that of the assembly.
+    """
+    return made(Body, "body", locals())
 
 
 @checked
@@ -1098,6 +1264,40 @@ def modal_damping(
 
 
 @checked
+def surface(*, stl: str, density: Real, unit: LengthUnit | None = None) -> Surface:
+    """A homogeneous solid inside a closed surface of triangles. Its axes are those of the file.
+
+    Parameters
+    ----------
+    stl : text
+        Path of an STL file, relative to the directory of the problem file.
+    density : number above 0 [kg/m³]
+        Density.
+    unit : "m" or "cm" or "mm" or "inch", optional
+        Unit of the coordinates of the file, default "m".
+        "m": Metres.
+        "cm": Centimetres.
+        "mm": Millimetres.
+        "inch": Inches.
+    """
+    return made(Surface, "surface", locals())
+
+
+@checked
+def between(*, between: Sequence[str], fraction: Real) -> Between:
+    """A point on the line through two named points of the same body.
+
+    Parameters
+    ----------
+    between : list of 2 texts
+        Names of both points.
+    fraction : number
+        Where it is: 0 at the first, 1 at the second; other numbers are on the line beyond them.
+    """
+    return made(Between, "between", locals())
+
+
+@checked
 def place(
     *,
     put: Point | None = None,
@@ -1130,15 +1330,47 @@ def place(
 
 
 @checked
-def turn(*, axis: Vector, angle: Real) -> Turn:
-    """A rotation by an angle about an axis.
+def turn(
+    *,
+    axis: Vector | None = None,
+    angle: Real | None = None,
+    degrees: InDegrees | None = None,
+    x: Real | None = None,
+    y: Real | None = None,
+    z: Real | None = None,
+    sequence: str | None = None,
+    angles: Vector | None = None,
+    quaternion: Vector | None = None,
+    matrix: Matrix | None = None,
+) -> Turn:
+    """A rotation in one of its forms: an axis with an angle, an axis of the ground with an angle, a sequence of
+    angles about the body's own axes, a quaternion, or a matrix.
 
     Parameters
     ----------
-    axis : numbers, shape (3,)
-        Axis of any length but zero.
-    angle : number [rad]
+    axis : numbers, shape (3,), optional
+        Axis of any length but zero, with `angle` or `degrees`.
+    angle : number [rad], optional
         Angle by the right-hand rule.
+    degrees : number [°] or numbers, shape (3,) [°], optional
+        The angle in degrees instead, or with `sequence` its three angles.
+        number [°]: One.
+        numbers, shape (3,) [°]: Three.
+    x : number [°], optional
+        Rotation about x.
+    y : number [°], optional
+        Rotation about y.
+    z : number [°], optional
+        Rotation about z.
+    sequence : text, optional
+        Three of x, y and z: rotations about these axes of the body, each as those before it have turned them;
+        "zyx" are yaw, pitch and roll. With `angles` or `degrees`.
+    angles : numbers, shape (3,) [rad], optional
+        Angles of `sequence` in radians.
+    quaternion : numbers, shape (4,), optional
+        Unit quaternion w, x, y, z: cos(angle/2), then the unit axis times sin(angle/2). It is normalised.
+    matrix : numbers, shape (3, 3), optional
+        Rows of the rotation matrix; its columns are the axes of the turned body.
     """
     return made(Turn, "turn", locals())
 
@@ -1204,7 +1436,13 @@ def joint_start(*, turn: TurnStart | None = None, slide: SlideStart | None = Non
 
 
 @checked
-def turn_start(*, angle: Real | None = None, rate: Real | None = None) -> TurnStart:
+def turn_start(
+    *,
+    angle: Real | None = None,
+    rate: Real | None = None,
+    degrees: Real | None = None,
+    degrees_per_second: Real | None = None,
+) -> TurnStart:
     """Initial angle and rate.
 
     Parameters
@@ -1213,6 +1451,10 @@ def turn_start(*, angle: Real | None = None, rate: Real | None = None) -> TurnSt
         Angle of the first body relative to the second, from the placement; default 0.
     rate : number [rad/s], optional
         Its rate, default that of the bodies' velocities.
+    degrees : number [°], optional
+        The angle in degrees, instead of `angle`.
+    degrees_per_second : number [°/s], optional
+        The rate in degrees per second, instead of `rate`.
     """
     return made(TurnStart, "turn_start", locals())
 
@@ -1229,6 +1471,23 @@ def slide_start(*, displacement: Real | None = None, rate: Real | None = None) -
         Its rate, default that of the bodies' velocities.
     """
     return made(SlideStart, "slide_start", locals())
+
+
+@checked
+def drive(*, joint: str, turn: Turning | None = None, slide: Sliding | None = None) -> Drive:
+    """Prescribed motion of a joint about its axis, along it, or both. It is the motion of the first body relative to
+    the second (ground counts as the second), from the placement.
+
+    Parameters
+    ----------
+    joint : text
+        Name of a revolute, planar, prismatic or cylindrical joint.
+    turn : one of `turning`, optional
+        Angle about the axis as a function of time.
+    slide : one of `sliding`, optional
+        Displacement along the axis as a function of time.
+    """
+    return made(Drive, "drive", locals())
 
 
 @checked
@@ -1285,6 +1544,64 @@ def gate(
 
 
 @checked
+def window_ends(*, from_: Edge | None = None, to: Edge | None = None) -> WindowEnds:
+    """The ends of a window.
+
+    Parameters
+    ----------
+    from_ : number [s] or `reach(…)`, optional
+        Its start, default the start of the motion.
+        number [s]: A time.
+        `reach(…)`: The first time at which a quantity reaches a value.
+    to : number [s] or `reach(…)`, optional
+        Its end, default the end of the motion.
+        number [s]: A time.
+        `reach(…)`: The first time at which a quantity reaches a value.
+    """
+    return made(WindowEnds, "window_ends", locals())
+
+
+@checked
+def reach(
+    *,
+    when: Quantity,
+    reaches: Real | None = None,
+    rises_to: Real | None = None,
+    falls_to: Real | None = None,
+) -> Reach:
+    """A quantity reaches a value: give one of `reaches`, `rises_to` and `falls_to`.
+
+    Parameters
+    ----------
+    when : one of `quantities`
+        The quantity.
+    reaches : number [that of the quantity], optional
+        The value, which the quantity must cross upwards or downwards.
+    rises_to : number [that of the quantity], optional
+        The value, which the quantity must cross upwards.
+    falls_to : number [that of the quantity], optional
+        The value, which the quantity must cross downwards.
+    """
+    return made(Reach, "reach", locals())
+
+
+@checked
+def within(*, of: Quantity, during: During | None = None) -> Within:
+    """A quantity and a window of time.
+
+    Parameters
+    ----------
+    of : one of `quantities`
+        The quantity.
+    during : numbers, shape (2,) [s] or `window_ends(…)`, optional
+        The window, default the whole run.
+        numbers, shape (2,) [s]: Start and end.
+        `window_ends(…)`: Each end by itself.
+    """
+    return made(Within, "within", locals())
+
+
+@checked
 def barrier(*, distance: Real, top: Real) -> Barrier:
     """A barrier across the direction of flight.
 
@@ -1296,6 +1613,55 @@ def barrier(*, distance: Real, top: Real) -> Barrier:
         Height of its top above the origin.
     """
     return made(Barrier, "barrier", locals())
+
+
+@checked
+def expression_of_functions(*, expression: str) -> ExpressionOfFunctions:
+    """An expression of functions.
+
+    Parameters
+    ----------
+    expression : text
+        Of functions and parameters by name, as that of a function.
+    """
+    return made(ExpressionOfFunctions, "expression_of_functions", locals())
+
+
+@checked
+def joint_defaults(
+    *,
+    between: Sequence[str] | None = None,
+    at: JointPlace | None = None,
+    axis: Axis | None = None,
+    cross: Axis | None = None,
+    start: JointStart | None = None,
+    length: Real | None = None,
+) -> JointDefaults:
+    """Keys of joints.
+
+    Parameters
+    ----------
+    between : list of 2 texts, optional
+        The two bodies; one of them may be "ground".
+    at : text or numbers, shape (3,) [m] or `point_pair(…)`, optional
+        Position of the joint at the start.
+        text: `"body.point"`, or `"body"` for the origin of its axes.
+        numbers, shape (3,) [m]: Ground coordinates.
+        `point_pair(…)`: One point on each body; assembly brings them together.
+    axis : numbers, shape (3,) or `body_axis(…)`, optional
+        The joint's axis at the start, of any length but zero.
+        numbers, shape (3,): In ground axes.
+        `body_axis(…)`: In the axes of a body.
+    cross : numbers, shape (3,) or `body_axis(…)`, optional
+        Axis of the second body of a universal joint at the start.
+        numbers, shape (3,): In ground axes.
+        `body_axis(…)`: In the axes of a body.
+    start : `joint_start(…)`, optional
+        Initial position and rate of its motion.
+    length : number above 0 [m], optional
+        Length of a rod.
+    """
+    return made(JointDefaults, "joint_defaults", locals())
 
 
 class shapes(Kinds):
@@ -2763,6 +3129,249 @@ class quantities(Kinds):
 
     @staticmethod
     @checked
+    def jerk(*, body: str, direction: Vector, point: Point | None = None) -> Quantity:
+        """Component of the rate of change of a point's acceleration [m/s³].
+
+        Parameters
+        ----------
+        body : text
+            The body.
+        direction : numbers, shape (3,)
+            Direction in ground axes. It is not normalised; a unit vector gives a component.
+        point : text or numbers, shape (3,) [m], optional
+            Its point, by name or in body axes; default the centre of mass.
+            text: Name of one of the body's points.
+            numbers, shape (3,) [m]: Coordinates in body axes from their origin.
+        """
+        return made(Quantity, "quantities.jerk", locals())
+
+    @staticmethod
+    @checked
+    def sensor_acceleration(*, body: str, direction: Vector, point: Point | None = None) -> Quantity:
+        """Component of a point's acceleration in the axes of its body [m/s²], as a sensor on it measures but for
+        gravity.
+
+        Parameters
+        ----------
+        body : text
+            The body.
+        direction : numbers, shape (3,)
+            Direction in ground axes. It is not normalised; a unit vector gives a component.
+        point : text or numbers, shape (3,) [m], optional
+            Its point, by name or in body axes; default the centre of mass.
+            text: Name of one of the body's points.
+            numbers, shape (3,) [m]: Coordinates in body axes from their origin.
+        """
+        return made(Quantity, "quantities.sensor_acceleration", locals())
+
+    @staticmethod
+    @checked
+    def relative_position(
+        *,
+        body: str,
+        relative_to: str,
+        direction: Vector,
+        point: Point | None = None,
+        from_: Point | None = None,
+    ) -> Quantity:
+        """Component of a point's position as seen from another body [m].
+
+        Parameters
+        ----------
+        body : text
+            The body that is seen.
+        relative_to : text
+            The body that sees it, or "ground".
+        direction : numbers, shape (3,)
+            Direction in the axes of the body that sees. It is not normalised; a unit vector gives a component.
+        point : text or numbers, shape (3,) [m], optional
+            Its point, by name or in body axes; default the centre of mass.
+            text: Name of one of the body's points.
+            numbers, shape (3,) [m]: Coordinates in body axes from their origin.
+        from_ : text or numbers, shape (3,) [m], optional
+            The point of that body from which it is seen, by name or in its axes; default its centre of mass, on
+            ground the origin.
+            text: Name of one of the body's points.
+            numbers, shape (3,) [m]: Coordinates in body axes from their origin.
+        """
+        return made(Quantity, "quantities.relative_position", locals())
+
+    @staticmethod
+    @checked
+    def relative_velocity(
+        *,
+        body: str,
+        relative_to: str,
+        direction: Vector,
+        point: Point | None = None,
+        from_: Point | None = None,
+    ) -> Quantity:
+        """Component of a point's velocity as seen from another body [m/s].
+
+        Parameters
+        ----------
+        body : text
+            The body that is seen.
+        relative_to : text
+            The body that sees it, or "ground".
+        direction : numbers, shape (3,)
+            Direction in the axes of the body that sees. It is not normalised; a unit vector gives a component.
+        point : text or numbers, shape (3,) [m], optional
+            Its point, by name or in body axes; default the centre of mass.
+            text: Name of one of the body's points.
+            numbers, shape (3,) [m]: Coordinates in body axes from their origin.
+        from_ : text or numbers, shape (3,) [m], optional
+            The point of that body from which it is seen, by name or in its axes; default its centre of mass, on
+            ground the origin.
+            text: Name of one of the body's points.
+            numbers, shape (3,) [m]: Coordinates in body axes from their origin.
+        """
+        return made(Quantity, "quantities.relative_velocity", locals())
+
+    @staticmethod
+    @checked
+    def distance(*, body: str, relative_to: str, point: Point | None = None, from_: Point | None = None) -> Quantity:
+        """Distance of points of two bodies [m].
+
+        Parameters
+        ----------
+        body : text
+            The first body.
+        relative_to : text
+            The other body, or "ground".
+        point : text or numbers, shape (3,) [m], optional
+            Its point, by name or in body axes; default the centre of mass.
+            text: Name of one of the body's points.
+            numbers, shape (3,) [m]: Coordinates in body axes from their origin.
+        from_ : text or numbers, shape (3,) [m], optional
+            Its point, by name or in its axes; default its centre of mass, on ground the origin.
+            text: Name of one of the body's points.
+            numbers, shape (3,) [m]: Coordinates in body axes from their origin.
+        """
+        return made(Quantity, "quantities.distance", locals())
+
+    @staticmethod
+    @checked
+    def power(value: PowerOf, /) -> Quantity:
+        """Power of a load or drive [W]; its integral is the work.
+
+        Parameters
+        ----------
+        value : one of `power_ofs`
+            What gives or takes power: a load, or the drive of a joint.
+        """
+        return made_of(Quantity, "quantities.power", value)
+
+    @staticmethod
+    @checked
+    def angle_rate(*, joint: str) -> Quantity:
+        """Rate of the angle of a joint [rad/s].
+
+        Parameters
+        ----------
+        joint : text
+            Name of a revolute, planar or cylindrical joint. The angle is that of its first body relative to the
+            second (ground counts as the second) about the axis, from the placement.
+        """
+        return made(Quantity, "quantities.angle_rate", locals())
+
+    @staticmethod
+    @checked
+    def slide_rate(*, joint: str) -> Quantity:
+        """Rate of the displacement of a joint along its axis [m/s].
+
+        Parameters
+        ----------
+        joint : text
+            Name of a prismatic or cylindrical joint. The displacement is that of its first body against the second
+            (ground counts as the second) along the axis, from the placement.
+        """
+        return made(Quantity, "quantities.slide_rate", locals())
+
+    @staticmethod
+    @checked
+    def sum(value: Sequence[Quantity], /) -> Quantity:
+        """Sum of quantities of one unit.
+
+        Parameters
+        ----------
+        value : list of one of `quantities`
+        """
+        return made_of(Quantity, "quantities.sum", value)
+
+    @staticmethod
+    @checked
+    def difference(value: Sequence[Quantity], /) -> Quantity:
+        """The first quantity minus the second, of one unit.
+
+        Parameters
+        ----------
+        value : list of 2 one of `quantities`
+        """
+        return made_of(Quantity, "quantities.difference", value)
+
+    @staticmethod
+    @checked
+    def product(value: Sequence[Quantity], /) -> Quantity:
+        """Product of quantities.
+
+        Parameters
+        ----------
+        value : list of one of `quantities`
+        """
+        return made_of(Quantity, "quantities.product", value)
+
+    @staticmethod
+    @checked
+    def quotient(value: Sequence[Quantity], /) -> Quantity:
+        """The first quantity by the second.
+
+        Parameters
+        ----------
+        value : list of 2 one of `quantities`
+        """
+        return made_of(Quantity, "quantities.quotient", value)
+
+    @staticmethod
+    @checked
+    def square(value: Quantity, /) -> Quantity:
+        """Square of a quantity.
+
+        Parameters
+        ----------
+        value : one of `quantities`
+            A quantity at an instant.
+        """
+        return made_of(Quantity, "quantities.square", value)
+
+    @staticmethod
+    @checked
+    def absolute(*, of: Quantity, width: Real) -> Quantity:
+        """Absolute value of a quantity, smooth at zero.
+
+        Parameters
+        ----------
+        of : one of `quantities`
+            The quantity x.
+        width : number above 0 [unit of the quantity]
+            Width w of the rounded corner at zero: √(x² + w²) − w, at most w below |x|.
+        """
+        return made(Quantity, "quantities.absolute", locals())
+
+    @staticmethod
+    @checked
+    def rate(value: Quantity, /) -> Quantity:
+        """Rate of change of a quantity in time, by polynomials between the samples.
+
+        Parameters
+        ----------
+        value : one of `quantities`
+            A quantity at an instant.
+        """
+        return made_of(Quantity, "quantities.rate", value)
+
+    @staticmethod
+    @checked
     def rotation(
         *,
         body: str,
@@ -3122,6 +3731,32 @@ class quantities(Kinds):
         return made(Quantity, "quantities.largest_fibre_stress", locals())
 
 
+class power_ofs(Kinds):
+    """What gives or takes power: a load, or the drive of a joint."""
+
+    @staticmethod
+    @checked
+    def load(value: str, /) -> PowerOf:
+        """Name of a force, torque, spring, damper or friction. Positive where it gives energy to the bodies.
+
+        Parameters
+        ----------
+        value : text
+        """
+        return made_of(PowerOf, "power_ofs.load", value)
+
+    @staticmethod
+    @checked
+    def drive(value: str, /) -> PowerOf:
+        """Name of a drive. Positive where it gives energy to the machine.
+
+        Parameters
+        ----------
+        value : text
+        """
+        return made_of(PowerOf, "power_ofs.drive", value)
+
+
 class methods(Kinds):
     """An integration method."""
 
@@ -3270,7 +3905,7 @@ class functions(Kinds):
 
     @staticmethod
     @checked
-    def ks(*, rho: Real, of: Quantity, bound: Bound | None = None) -> Function:
+    def ks(*, rho: Real, of: Quantity, bound: Bound | None = None, during: During | None = None) -> Function:
         """Kreisselmeier–Steinhauser function, a smooth bound of the maximum over the run.
 
         Parameters
@@ -3283,12 +3918,16 @@ class functions(Kinds):
             "below" (default): never above the true maximum. "above": never below it, as an upper limit needs.
             "below": Never above it.
             "above": Never below it.
+        during : numbers, shape (2,) [s] or `window_ends(…)`, optional
+            The window of time, default the whole run.
+            numbers, shape (2,) [s]: Start and end.
+            `window_ends(…)`: Each end by itself.
         """
         return made(Function, "functions.ks", locals())
 
     @staticmethod
     @checked
-    def induced_exponential(*, rho: Real, of: Quantity) -> Function:
+    def induced_exponential(*, rho: Real, of: Quantity, during: During | None = None) -> Function:
         """Induced exponential, a smooth mean near the maximum over the run.
 
         Parameters
@@ -3297,32 +3936,102 @@ class functions(Kinds):
             Aggregation parameter in 1/unit of the quantity; larger is closer to the maximum.
         of : one of `quantities`
             The quantity.
+        during : numbers, shape (2,) [s] or `window_ends(…)`, optional
+            The window of time, default the whole run.
+            numbers, shape (2,) [s]: Start and end.
+            `window_ends(…)`: Each end by itself.
         """
         return made(Function, "functions.induced_exponential", locals())
 
     @staticmethod
     @checked
-    def integral(value: Quantity, /) -> Function:
-        """Integral over the run.
+    def integral(value: Over, /) -> Function:
+        """Integral over the run, or over a window of time.
 
         Parameters
         ----------
-        value : one of `quantities`
-            A quantity at an instant.
+        value : `within(…)` or one of `quantities`
+            A quantity, over the whole run or a window of time: the quantity alone, or with `during`.
+            `within(…)`: With a window.
+            one of `quantities`: Over the whole run.
         """
         return made_of(Function, "functions.integral", value)
 
     @staticmethod
     @checked
-    def final(value: Quantity, /) -> Function:
-        """Value at the end of the run.
+    def final(value: Over, /) -> Function:
+        """Value at the end of the run, or of a window of time.
 
         Parameters
         ----------
-        value : one of `quantities`
-            A quantity at an instant.
+        value : `within(…)` or one of `quantities`
+            A quantity, over the whole run or a window of time: the quantity alone, or with `during`.
+            `within(…)`: With a window.
+            one of `quantities`: Over the whole run.
         """
         return made_of(Function, "functions.final", value)
+
+    @staticmethod
+    @checked
+    def mean(value: Over, /) -> Function:
+        """Mean over the run, or over a window of time.
+
+        Parameters
+        ----------
+        value : `within(…)` or one of `quantities`
+            A quantity, over the whole run or a window of time: the quantity alone, or with `during`.
+            `within(…)`: With a window.
+            one of `quantities`: Over the whole run.
+        """
+        return made_of(Function, "functions.mean", value)
+
+    @staticmethod
+    @checked
+    def mean_square(value: Over, /) -> Function:
+        """Mean of the square over the run, or over a window of time.
+
+        Parameters
+        ----------
+        value : `within(…)` or one of `quantities`
+            A quantity, over the whole run or a window of time: the quantity alone, or with `during`.
+            `within(…)`: With a window.
+            one of `quantities`: Over the whole run.
+        """
+        return made_of(Function, "functions.mean_square", value)
+
+    @staticmethod
+    @checked
+    def mean_absolute(*, width: Real, of: Quantity, during: During | None = None) -> Function:
+        """Smooth mean of the absolute value over the run, or over a window of time.
+
+        Parameters
+        ----------
+        width : number above 0 [unit of the quantity]
+            Width w of the rounded corner at zero: √(x² + w²) − w instead of |x|, at most w below it.
+        of : one of `quantities`
+            The quantity.
+        during : numbers, shape (2,) [s] or `window_ends(…)`, optional
+            The window, default the whole run.
+            numbers, shape (2,) [s]: Start and end.
+            `window_ends(…)`: Each end by itself.
+        """
+        return made(Function, "functions.mean_absolute", locals())
+
+    @staticmethod
+    @checked
+    def value(*, at: Edge, of: Quantity) -> Function:
+        """Value at a time, or where a quantity first reaches a value.
+
+        Parameters
+        ----------
+        at : number [s] or `reach(…)`
+            The time, or the first time at which a quantity reaches a value.
+            number [s]: A time.
+            `reach(…)`: The first time at which a quantity reaches a value.
+        of : one of `quantities`
+            The quantity.
+        """
+        return made(Function, "functions.value", locals())
 
     @staticmethod
     @checked
@@ -3494,6 +4203,18 @@ class functions(Kinds):
         """
         return made(Function, "functions.lowest_frequency", locals())
 
+    @staticmethod
+    @checked
+    def expression(value: str, /) -> Function:
+        """An expression of other functions and of parameters, such as `2*mass + work/duration`. Names that are no words
+        stand between single quotes or backquotes.
+
+        Parameters
+        ----------
+        value : text
+        """
+        return made_of(Function, "functions.expression", value)
+
 
 class MachineKeys(Document):
     """A multibody scene in motion, or structures under load cases; what is asked of them and what may be designed.
@@ -3526,6 +4247,9 @@ class MachineKeys(Document):
         "constraints",
         "optimiser",
         "plot",
+        "parts",
+        "use",
+        "defaults",
     )
 
     @checked
@@ -3593,7 +4317,8 @@ class MachineKeys(Document):
         beam: Beam | None = None,
         elements: Elements | None = None,
         modal: Modal | None = None,
-        points: Mapping[str, Vector] | None = None,
+        mass_properties: Surface | None = None,
+        points: Mapping[str, BodyPoint] | None = None,
         place: Place | None = None,
         velocity: BodyVelocity | None = None,
     ) -> BodyName:
@@ -3624,7 +4349,9 @@ class MachineKeys(Document):
             Shells with elastic coordinates at all their nodes, instead of all above.
         modal : `modal(…)`, optional
             A body with elastic coordinates from files of other codes, instead of all above.
-        points : numbers, shape (3,) [m] by name, optional
+        mass_properties : `surface(…)`, optional
+            Mass, centre of mass and inertia of a solid from its surface, instead of all above.
+        points : numbers, shape (3,) [m] or `between(…)` by name, optional
             Named points in body axes from their origin (the centre of the shape, the start of a beam).
         place : `place(…)`, optional
             Placement at the start; by default its axes are those of ground.
@@ -3924,26 +4651,32 @@ class MachineKeys(Document):
         return Name(name, self._add("variables", "variable", name, keys(locals(), "name")))
 
     @checked
-    def minimise(self, value: str, /) -> None:
-        """Name of the function to minimise.
+    def minimise(self, value: WhichFunction, /) -> None:
+        """The function to minimise: its name, or an expression.
 
         A second call replaces what the first has set.
 
         Parameters
         ----------
-        value : text
+        value : text or `expression_of_functions(…)`
+            A function: its name, or an expression of functions.
+            text: Name of a function.
+            `expression_of_functions(…)`: An expression in this place.
         """
         self._set("objective", "minimise", {"minimise": value})
 
     @checked
-    def maximise(self, value: str, /) -> None:
-        """Name of the function to maximise.
+    def maximise(self, value: WhichFunction, /) -> None:
+        """The function to maximise: its name, or an expression.
 
         A second call replaces what the first has set.
 
         Parameters
         ----------
-        value : text
+        value : text or `expression_of_functions(…)`
+            A function: its name, or an expression of functions.
+            text: Name of a function.
+            `expression_of_functions(…)`: An expression in this place.
         """
         self._set("objective", "maximise", {"maximise": value})
 
@@ -3952,7 +4685,7 @@ class MachineKeys(Document):
         self,
         name: str,
         *,
-        function: str,
+        function: WhichFunction,
         description: str | None = None,
         lower: Real | None = None,
         upper: Real | None = None,
@@ -3965,8 +4698,10 @@ class MachineKeys(Document):
         ----------
         name : text
             Its name among the `constraints`.
-        function : text
-            Name of the function.
+        function : text or `expression_of_functions(…)`
+            The function: its name, or an expression.
+            text: Name of a function.
+            `expression_of_functions(…)`: An expression in this place.
         description : text, optional
             Remark for readers of the file.
         lower : number, optional
@@ -4044,3 +4779,94 @@ class MachineKeys(Document):
             Points whose paths are drawn: `"body.point"`, or `"body"` for the origin of its axes.
         """
         self._set("plot", "set_plot", locals())
+
+    @checked
+    def add_part(
+        self,
+        name: str,
+        *,
+        description: str | None = None,
+        file: str | None = None,
+        parameters: Mapping[str, Real] | None = None,
+        bodies: Mapping[str, Body] | None = None,
+        joints: Mapping[str, Joint] | None = None,
+        loads: Mapping[str, Load] | None = None,
+        drives: Mapping[str, Drive] | None = None,
+    ) -> Name:
+        """Adds a part.
+
+        A group of bodies, joints, loads and drives in axes of its own, or the file that has it.
+
+        Parameters
+        ----------
+        name : text
+            Its name among the `parts`.
+        description : text, optional
+            Remark for readers of the file.
+        file : text, optional
+            Path of a JSON file with the keys below, relative to the directory of the problem file; instead of them.
+        parameters : number [that of the numbers it gives] by name, optional
+            Numbers by name that expressions of the part use before those of the machine. A use may give others.
+        bodies : `body(…)` by name, optional
+            Bodies by name.
+        joints : one of `joints` by name, optional
+            Joints by name.
+        loads : one of `loads` by name, optional
+            Loads by name.
+        drives : `drive(…)` by name, optional
+            Drives by name.
+        """
+        return Name(name, self._add("parts", "part", name, keys(locals(), "name")))
+
+    @checked
+    def add_use(
+        self,
+        name: str,
+        *,
+        part: str,
+        description: str | None = None,
+        at: Vector | None = None,
+        turn: Turns | None = None,
+        parameters: Mapping[str, Real] | None = None,
+        connect: Mapping[str, str] | None = None,
+    ) -> Name:
+        """Adds a use.
+
+        A use of a part.
+
+        Parameters
+        ----------
+        name : text
+            Its name among the `use`.
+        part : text
+            Name of the part.
+        description : text, optional
+            Remark for readers of the file.
+        at : numbers, shape (3,) [m], optional
+            Place of the origin of the part's axes, default the origin.
+        turn : `turn(…)` or list of `turn(…)`, optional
+            Rotation from ground axes to those of the part, or a list of rotations about ground axes, applied in
+            order; default none.
+            `turn(…)`: One rotation.
+            list of `turn(…)`: Several, applied in order.
+        parameters : number [that of the numbers it gives] by name, optional
+            Parameters of the part that have other values here; expressions are of the machine's parameters.
+        connect : text by name, optional
+            By name in the part: the body of the machine, or "ground", that it stands for.
+        """
+        return Name(name, self._add("use", "use", name, keys(locals(), "name")))
+
+    @checked
+    def set_defaults(self, *, bodies: Body | None = None, joints: JointDefaults | None = None) -> None:
+        """Keys that bodies and joints have unless they give their own.
+
+        A second call replaces what the first has set.
+
+        Parameters
+        ----------
+        bodies : `body(…)`, optional
+            Of bodies.
+        joints : `joint_defaults(…)`, optional
+            Of joints; a key that a kind of joint does not have is not for it.
+        """
+        self._set("defaults", "set_defaults", locals())

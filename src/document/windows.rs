@@ -77,13 +77,13 @@ pub enum During {
     /// Start and end.
     Times(#[schemars(extend("unit" = "s"))] [Quantity; 2]),
     /// Each end by itself.
-    Between(Between),
+    Between(WindowEnds),
 }
 
 /// The ends of a window.
 #[derive(Clone, Debug, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
-pub struct Between {
+pub struct WindowEnds {
     /// Its start, default the start of the motion.
     pub from: Option<Edge>,
     /// Its end, default the end of the motion.

@@ -128,6 +128,7 @@ fn simulate_prints_and_writes_only_where_it_is_told_to() {
     expect(0, at.path(), &["simulate", HAMMER, "--output", "made/here"]);
     let made = at.path().join("made/here");
     let all = [
+        "constraints.svg",
         "energy.svg",
         "functions.csv",
         "motion.csv",
@@ -239,6 +240,7 @@ fn optimising_writes_a_record_and_figures() {
     );
     let results = at.path().join("results/hammer");
     let expected = [
+        "constraints.svg",
         "convergence.svg",
         "energy.svg",
         "evaluations.jsonl",
@@ -468,9 +470,9 @@ fn paths_are_taken_from_the_working_directory() {
     std::fs::copy(HAMMER, at.path().join("hammer.json")).expect("is copied");
     let ran = expect(0, &inner, &["../hammer.json"]);
     assert!(ran.err.contains("results in results/hammer"), "{}", ran.err);
-    assert_eq!(names(&inner).len(), 7);
+    assert_eq!(names(&inner).len(), 8);
     assert!(inner.join("results/hammer/optimum.json").is_file());
-    assert_eq!(names(at.path()).len(), 8, "seven results and the problem");
+    assert_eq!(names(at.path()).len(), 9, "eight results and the problem");
 }
 
 #[test]

@@ -21,7 +21,7 @@ fn a_figure_that_cannot_be_written_costs_no_result() {
         for name in ["evaluations.jsonl", "history.csv", "state.json"] {
             assert!(found.contains(&name.to_owned()), "{found:?}");
         }
-        assert_eq!(found.len(), 6, "the other figures: {found:?}");
+        assert_eq!(found.len(), 7, "the other figures: {found:?}");
     }
     let out = at.path().join("simulated");
     std::fs::create_dir_all(out.join("energy.svg")).expect("is made");

@@ -81,6 +81,7 @@ fn pictures_are_coloured() {
         [
             "motion.svg",
             "energy.svg",
+            "constraints.svg",
             "deflection.svg",
             "trace.svg",
             "stress.svg"

@@ -1,6 +1,7 @@
 //! Histories: the quantity behind a function at the samples of a run, and at instants between them.
 
 use super::Function;
+use super::rate::slopes;
 use crate::integrate::Trajectory;
 use crate::model::Model;
 
@@ -151,21 +152,4 @@ fn reading(run: &Trajectory<f64>, shown: &[usize], at: f64) -> Reading {
         coarser: lagrange(&fewer),
         slope,
     }
-}
-
-/// The derivative at `at` of the polynomial through nodes at `place`: pairs (node, weight).
-pub(super) fn slopes(
-    nodes: &[usize],
-    at: f64,
-    place: impl Fn(usize) -> f64,
-) -> impl Iterator<Item = (usize, f64)> {
-    nodes.iter().map(move |&j| {
-        let others = || nodes.iter().copied().filter(move |&i| i != j);
-        let one = |m: usize| {
-            let rest = others().filter(|&i| i != m);
-            let factor = 1.0 / (place(j) - place(m));
-            rest.fold(factor, |w, i| w * (at - place(i)) / (place(j) - place(i)))
-        };
-        (j, others().map(one).sum())
-    })
 }

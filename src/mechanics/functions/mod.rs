@@ -21,6 +21,7 @@ pub mod smoothed;
 pub mod snapshot;
 pub mod stations;
 pub mod turning;
+mod view;
 pub mod window;
 mod windowed;
 
