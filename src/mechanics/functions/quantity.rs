@@ -147,7 +147,11 @@ impl<S: Scalar> Quantity<S> {
     pub fn unit(&self) -> String {
         match self {
             Self::Of(instant) => instant.unit().to_owned(),
-            Self::Combined { .. } => self.own_unit().usual(),
+            Self::Combined { operation, of } => match operation {
+                // Of equal units the text stays: N m does not become J.
+                Operation::Sum | Operation::Difference | Operation::Absolute { .. } => of[0].unit(),
+                _ => self.own_unit().usual(),
+            },
         }
     }
 
@@ -182,7 +186,12 @@ impl<S: Scalar> Quantity<S> {
     pub fn integral_unit(&self) -> String {
         match self {
             Self::Of(instant) => instant.integral_unit(),
-            Self::Combined { .. } => self.own_unit().times(&Unit::second(), 1.0).usual(),
+            Self::Combined { operation, of } => match operation {
+                Operation::Sum | Operation::Difference | Operation::Absolute { .. } => {
+                    of[0].integral_unit()
+                }
+                _ => self.own_unit().times(&Unit::second(), 1.0).usual(),
+            },
         }
     }
 
