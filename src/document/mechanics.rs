@@ -263,7 +263,7 @@ pub enum Location {
 #[serde(untagged)]
 pub enum Turns {
     /// One rotation.
-    One(Turn),
+    One(Box<Turn>),
     /// Several, applied in order.
     Several(Vec<Turn>),
 }

@@ -10,9 +10,9 @@ use serde::Deserialize;
 #[serde(untagged)]
 pub enum Over {
     /// With a window.
-    Within(Within),
+    Within(Box<Within>),
     /// Over the whole run.
-    Whole(Instant),
+    Whole(Box<Instant>),
 }
 
 /// A quantity and a window of time.
@@ -77,7 +77,7 @@ pub enum During {
     /// Start and end.
     Times(#[schemars(extend("unit" = "s"))] [Quantity; 2]),
     /// Each end by itself.
-    Between(WindowEnds),
+    Between(Box<WindowEnds>),
 }
 
 /// The ends of a window.
@@ -97,7 +97,7 @@ pub enum Edge {
     /// A time.
     Time(#[schemars(extend("unit" = "s"))] Quantity),
     /// The first time at which a quantity reaches a value.
-    When(Reach),
+    When(Box<Reach>),
 }
 
 /// A quantity reaches a value: give one of `reaches`, `rises_to` and `falls_to`.

@@ -248,8 +248,10 @@ fn what_is_no_solid_is_refused() {
     let folder = tempfile::tempdir().expect("a folder");
     let sound = block([1.0, 1.0, 1.0]);
     let text = problem_text(r#""density": 2700"#, "");
-    let refused =
-        |bytes: &[u8], text: &str| load(folder.path(), bytes, text).err().expect("a fault");
+    let refused = |bytes: &[u8], text: &str| match load(folder.path(), bytes, text) {
+        Err(fault) => fault,
+        Ok(_) => panic!("no fault: {text}"),
+    };
     let open = &sound[1..];
     let mut swapped = sound.clone();
     swapped[3].swap(0, 1);

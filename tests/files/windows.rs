@@ -208,12 +208,12 @@ fn hoekens_linkage_draws_its_line() {
 fn chebyshevs_linkage_draws_its_line() {
     // The first arm from the upright position, the second crossed.
     let document = |functions: Value| {
-        let (a, b, c, d) = (0.5, 0.2, 0.5, 0.4);
+        let (a, b, c, d): (f64, f64, f64, f64) = (0.5, 0.2, 0.5, 0.4);
         // The arm is upright at first: its pin is (0, 0.5).
-        let (x, y) = (0.0, 0.5);
-        let s: f64 = ((d - x) * (d - x) + y * y as f64).sqrt();
-        let to_foot = (-y as f64).atan2(d - x);
-        let bend: f64 = ((b * b + s * s - c * c) / (2.0 * b * s) as f64).acos();
+        let (x, y): (f64, f64) = (0.0, 0.5);
+        let s: f64 = ((d - x) * (d - x) + y * y).sqrt();
+        let to_foot = (-y).atan2(d - x);
+        let bend: f64 = ((b * b + s * s - c * c) / (2.0 * b * s)).acos();
         let coupler = to_foot - bend;
         let (kx, ky) = (x + b * coupler.cos(), y + b * coupler.sin());
         let rocker = ky.atan2(kx - d);

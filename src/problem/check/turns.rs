@@ -64,7 +64,7 @@ impl Checker<'_> {
         if let Some(quaternion) = &turn.quaternion {
             let squares = quaternion.iter().map(|own| own.value * own.value);
             let length = squares.sum::<f64>().sqrt();
-            if !((length - 1.0).abs() <= ROUNDED) {
+            if (length - 1.0).abs() > ROUNDED || length.is_nan() {
                 let found = format!("a quaternion of length {length}");
                 let expected = format!("one of length 1 to within {ROUNDED}");
                 let hint = "the order is w, x, y, z: the cosine of half the angle first";
@@ -78,7 +78,7 @@ impl Checker<'_> {
                 .map_with_location(|i, j, own: f64| (own - f64::from(u8::from(i == j))).abs());
             let expected = format!("rows of length 1 at right angles, to within {ROUNDED}");
             let place = join(pointer, "matrix");
-            if !(miss.max() <= ROUNDED) {
+            if miss.max() > ROUNDED || miss.max().is_nan() {
                 let found = format!("rows that miss those of a rotation by {:.3e}", miss.max());
                 self.fault(Finding::new(place, found, expected));
             } else if matrix.determinant() < 0.0 {

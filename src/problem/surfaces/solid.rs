@@ -41,7 +41,7 @@ pub fn inside(triangles: &[Triangle], unit: f64) -> Result<Solid, Refused> {
         (volume, first, second) = (-volume, -first, -second);
     }
     let around: f64 = ((high - low) * unit).iter().product();
-    if !(volume > FLAT * around) || !volume.is_normal() {
+    if volume <= FLAT * around || !volume.is_normal() {
         let found = format!("a surface around a volume of {volume:e} m³");
         return Err((found, "a surface with an inside"));
     }
