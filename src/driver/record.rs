@@ -23,7 +23,7 @@ pub(super) fn record(
     let (status, mut sentence) = outcome.status.verdict();
     if let Some(other) = &outcome.other {
         let (own, replaced) = match outcome.method {
-            Method::TrustRegion => ("trust region", "interior point"),
+            Method::TrustRegion | Method::LeastSquares => ("trust region", "interior point"),
             Method::InteriorPoint | Method::Auto => ("interior point", "trust region"),
         };
         let (_, why) = other.verdict();
