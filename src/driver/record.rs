@@ -172,6 +172,7 @@ pub(super) fn record(
         scaling: scaling_record(problem, outcome),
         second_order: None,
         gradient_certificate: None,
+        fit: None,
         integration: end.and_then(|end| end.integration(refreshes)),
         counts: Counts {
             iterations: outcome.counts.iterations as u64,

@@ -10,6 +10,8 @@ mod check;
 mod combined;
 mod composed;
 mod composing;
+mod data_file;
+mod data_text;
 mod derived;
 mod drawing;
 mod elastic_drawing;
@@ -29,6 +31,7 @@ mod instances;
 mod joints;
 mod loads;
 mod mass;
+mod measurements;
 mod memory;
 mod modal;
 mod notes;
@@ -75,7 +78,7 @@ pub use instances::SceneScalar;
 pub use memory::available as available_memory;
 pub use overrides::{Override, OverrideError};
 pub use schema::{schema, schema_with_expressions};
-pub use statics::{Asked, Moved, StaticScene, Statics, Workspace};
+pub use statics::{Asked, MeasuredFunction, Moved, StaticScene, Statics, Workspace};
 pub use text::{visible, visible_lines};
 pub use variables::Variable;
 
@@ -462,12 +465,17 @@ impl Problem {
         scene::own_velocities(&self.written, &self.extended(x))
     }
 
-    /// Whether bodies have files of their own.
+    /// Whether function f is a misfit.
+    pub fn is_misfit(&self, f: usize) -> bool {
+        let name = self.function_names.get(f);
+        let own = name.and_then(|name| self.written.functions.get(name));
+        matches!(own, Some(schema::functions::Function::Misfit(_)))
+    }
+
+    /// Whether bodies or measured values have files of their own.
     pub fn names_files(&self) -> bool {
-        self.written
-            .bodies
-            .values()
-            .any(|body| body.modal.is_some())
+        let bodies = &mut self.written.bodies.values();
+        bodies.any(|body| body.modal.is_some()) || measurements::names_files(&self.written)
     }
 
     /// Number of bodies in the file.

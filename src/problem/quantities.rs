@@ -4,6 +4,7 @@ use super::flexible::{FlexibleBodies, Sections, station, stations};
 use super::placement::{Assembly, GROUND};
 use super::starting_angles::{starting_angle, starting_turn};
 use crate::functions::seen::SeenPart;
+use crate::functions::series::Series;
 use crate::functions::{
     Bound, EnergyPart, Function, Gate, GateSide, Instant, Operation, Projectile, Reduction,
     Release, Rotation,
@@ -65,11 +66,22 @@ impl<S: Scalar> FunctionBuilder<'_, S> {
             }
             OfMotion::Value(value) => self.value_at(value),
             OfMotion::Clearance(clearance) => self.clearance(clearance),
+            OfMotion::Misfit(misfit) => Function::Misfit {
+                series: misfit.series.values().map(|own| self.series(own)).collect(),
+            },
             OfMotion::Duration => Function::Duration,
             OfMotion::Mass => Function::OfDesign {
                 unit: "kg",
                 value: self.mass,
             },
+        }
+    }
+
+    fn series(&self, own: &crate::schema::misfit::Series) -> Series<S> {
+        Series {
+            of: self.quantity(&own.of),
+            data: own.loaded.clone().unwrap_or_default(),
+            offset: own.offset.map_or(S::zero(), |offset| offset.get(self.x)),
         }
     }
 
@@ -406,6 +418,7 @@ pub fn released<'a>(
         | OfMotion::MeanSquare(_)
         | OfMotion::MeanAbsolute(_)
         | OfMotion::Value(_)
+        | OfMotion::Misfit(_)
         | OfMotion::Clearance(_)
         | OfMotion::Duration
         | OfMotion::Mass => return None,

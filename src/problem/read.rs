@@ -12,6 +12,7 @@ use super::first_scene::{
     collapsed, driven_twice, oblique, too_many, unassembled, unstarted, without_inertia,
 };
 use super::holds;
+use super::measurements;
 use super::modal;
 use super::overrides::Override;
 use super::placement::placement_order;
@@ -122,7 +123,9 @@ pub(super) fn parse(written: &str, file: &str, overrides: &[Override]) -> Result
     let content = match structure.findings.is_empty() {
         true => {
             let content = modal::load(&mut written, (file, &source))?;
-            content + &surfaces::load(&mut written, (file, &source))?
+            content
+                + &surfaces::load(&mut written, (file, &source))?
+                + &measurements::load(&mut written, (file, &source))?
         }
         false => String::new(),
     };
@@ -164,6 +167,7 @@ pub(super) fn parse(written: &str, file: &str, overrides: &[Override]) -> Result
             strip(&mut bound);
             modal::share(&written, &mut bound);
             surfaces::share(&written, &mut bound);
+            measurements::share(&written, &mut bound);
             elements::share(&written, &mut bound);
             let document = original.unwrap_or(document);
             let mut problem = problem(document, (bound, &content), order, variables, &composing);
@@ -412,6 +416,7 @@ fn problem(
                 method: optimiser.method.map(|method| match method {
                     schema::OptimisationMethod::InteriorPoint => Method::InteriorPoint,
                     schema::OptimisationMethod::TrustRegion => Method::TrustRegion,
+                    schema::OptimisationMethod::LeastSquares => Method::LeastSquares,
                     schema::OptimisationMethod::Auto => Method::Auto,
                 }),
                 tolerance: optimiser.tolerance,

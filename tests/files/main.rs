@@ -23,6 +23,7 @@ mod equilibrium;
 mod expressions;
 mod faults;
 pub mod finite_elements;
+mod fits;
 mod fixed_steps;
 mod flexible_families;
 mod flexible_scenes;

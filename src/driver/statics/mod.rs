@@ -11,7 +11,9 @@ pub mod precision;
 use crate::composed;
 use crate::integrate::WorkCounts;
 use crate::math::soft_max::{Smoothed, smoothed};
-use crate::problem::{Asked, Composition, Partials, Problem, StaticScene, Statics, Workspace};
+use crate::problem::{
+    Asked, Composition, MeasuredFunction, Partials, Problem, StaticScene, Statics, Workspace,
+};
 use crate::structures::functions::{Function, Peak, Solved};
 use crate::structures::modes::{
     LowestFrequency, ModalFailure, ModalProblem, Modes, lowest_frequency, lowest_of,
@@ -150,8 +152,29 @@ fn cases_of(function: &Asked) -> &[usize] {
             | Function::Displacement { case, .. } => std::slice::from_ref(case),
             Function::Stress { cases, .. } => cases,
         },
-        Asked::Frequency(_) | Asked::LowestFrequency(_) | Asked::DistanceFromStart => &[],
+        Asked::Frequency(_)
+        | Asked::LowestFrequency(_)
+        | Asked::Misfit { .. }
+        | Asked::DistanceFromStart => &[],
     }
+}
+
+/// Functions and those that they are of, each once, those first.
+fn with_measured(statics: &Statics, which: &[usize]) -> Vec<usize> {
+    let measured = which.iter().flat_map(|&f| match &statics.functions[f] {
+        Asked::Misfit { numbers, .. } => &numbers[..],
+        _ => &[],
+    });
+    let mut all: Vec<usize> = measured.map(|own| own.function).collect();
+    let is_misfit = |f: &usize| matches!(statics.functions[*f], Asked::Misfit { .. });
+    all.extend(which.iter().copied().filter(|f| !is_misfit(f)));
+    all.sort_unstable();
+    all.dedup();
+    let mut misfits: Vec<usize> = which.iter().copied().filter(is_misfit).collect();
+    misfits.sort_unstable();
+    misfits.dedup();
+    all.extend(misfits);
+    all
 }
 
 impl StaticDesign {
@@ -184,7 +207,7 @@ impl StaticDesign {
         }
         let all: Vec<usize> = (0..problem.function_names.len()).collect();
         let (asked_of, composition) = (asked.unwrap_or(&all), &problem.composition);
-        let which = &composition.of_scene(asked_of)[..];
+        let which = &with_measured(statics, &composition.of_scene(asked_of))[..];
         let needed = which.iter().flat_map(|&f| cases_of(&statics.functions[f]));
         let mut needed: Vec<usize> = match asked {
             Some(_) => needed.copied().collect(),
@@ -330,6 +353,10 @@ impl StaticDesign {
         let plain = |value| StaticValue { value, peak: None };
         Ok(match &self.statics.functions[f] {
             Asked::DistanceFromStart => plain(problem.distance_from_start(&self.x)),
+            Asked::Misfit { numbers, .. } => {
+                let square = |own: &MeasuredFunction| self.residual(own).powi(2);
+                plain(numbers.iter().map(square).sum::<f64>() / numbers.len() as f64)
+            }
             Asked::LowestFrequency(_) => {
                 let found = self.lowest[f].as_ref();
                 plain(found.expect("it was found before").value)
@@ -351,6 +378,14 @@ impl StaticDesign {
                 found.map_err(|unknown| ModalFailure::from(StaticFailure::UnknownSet(unknown)))?
             }
         })
+    }
+
+    /// The distance of a requested function from its measured value, in standard deviations.
+    ///
+    /// # Panics
+    /// If the function was not requested.
+    pub fn residual(&self, own: &MeasuredFunction) -> f64 {
+        (self.function(own.function).value - own.value) * own.weight
     }
 
     /// The value of a requested function.
@@ -401,7 +436,10 @@ impl StaticDesign {
                 };
                 Some(smoothed(found.value, (largest, largest), vec![*rho], with))
             }
-            Asked::OfSolutions(_) | Asked::Frequency(_) | Asked::DistanceFromStart => None,
+            Asked::OfSolutions(_)
+            | Asked::Frequency(_)
+            | Asked::Misfit { .. }
+            | Asked::DistanceFromStart => None,
         }
     }
 }

@@ -46,7 +46,9 @@ pub fn of_motion(
             (value, value.abs())
         }
         (None, Function::Reduced { .. }) => return None,
-        (None, Function::Duration | Function::OfDesign { .. }) => return None,
+        (None, Function::Misfit { .. } | Function::Duration | Function::OfDesign { .. }) => {
+            return None;
+        }
     };
     let with = |factor: f64| sharpened(function, factor).evaluate(model, run).value;
     Some(smoothed(found.value, (value, scale), rho, with))
@@ -65,7 +67,7 @@ fn rhos(function: &Function<f64>) -> Vec<f64> {
             Release::Best { rho, .. } => (Some(*rho), None),
             Release::Final => (None, None),
         },
-        Function::Duration | Function::OfDesign { .. } => (None, None),
+        Function::Misfit { .. } | Function::Duration | Function::OfDesign { .. } => (None, None),
     };
     let over_points = instant.and_then(|instant| match instant {
         Instant::ShellStress { rho, .. } => Some(*rho),
@@ -94,7 +96,7 @@ fn sharpened(function: &Function<f64>, factor: f64) -> Function<f64> {
             Release::Best { rho, .. } => *rho *= factor,
             Release::Final => {}
         },
-        Function::Duration | Function::OfDesign { .. } => {}
+        Function::Misfit { .. } | Function::Duration | Function::OfDesign { .. } => {}
     }
     out
 }

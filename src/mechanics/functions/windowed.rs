@@ -41,7 +41,11 @@ struct Span<S> {
 }
 
 /// Lagrange weights of the samples of a stretch at the fraction `at`.
-fn lagrange<T: Scalar, S: Scalar>(run: &Trajectory<T>, of: &Stretch, at: S) -> Vec<(usize, S)> {
+pub(super) fn lagrange<T: Scalar, S: Scalar>(
+    run: &Trajectory<T>,
+    of: &Stretch,
+    at: S,
+) -> Vec<(usize, S)> {
     let place = |k: usize| run.instants[k];
     let weight = |&j: &usize| {
         let others = of.samples.iter().filter(|&&i| i != j);
@@ -55,7 +59,7 @@ fn lagrange<T: Scalar, S: Scalar>(run: &Trajectory<T>, of: &Stretch, at: S) -> V
 
 /// The weighed sum of samples; weights have the sum one. It is summed relative to the first, so that the derivatives of
 /// the weights, whose sum is zero, do not cancel at the size of the values.
-fn reading<S: Scalar>(of: &[(usize, S)], values: &[S]) -> S {
+pub(super) fn reading<S: Scalar>(of: &[(usize, S)], values: &[S]) -> S {
     let first = values[of[0].0];
     of.iter().fold(first, |sum, &(k, weight)| {
         sum + (values[k] - first) * weight
@@ -63,7 +67,11 @@ fn reading<S: Scalar>(of: &[(usize, S)], values: &[S]) -> S {
 }
 
 /// The stretch whose part holds the fraction `at`, the earlier of two.
-fn stretch_at<'a, T: Scalar>(run: &Trajectory<T>, all: &'a [Stretch], at: f64) -> &'a Stretch {
+pub(super) fn stretch_at<'a, T: Scalar>(
+    run: &Trajectory<T>,
+    all: &'a [Stretch],
+    at: f64,
+) -> &'a Stretch {
     let end = |own: &Stretch| run.instants[own.samples[own.part.end]];
     let which = all.partition_point(|own| end(own) < at);
     &all[which.min(all.len() - 1)]

@@ -15,7 +15,7 @@ use crate::schema::functions::{
     Clearance, Component, Function, Gate, Instant, OfMotion, Range, WhichFunction,
 };
 use crate::schema::mechanics::Point;
-use crate::schema::{LinearSolver, Method};
+use crate::schema::{LinearSolver, Method, Objective, OptimisationMethod};
 
 /// A direction is horizontal up to this cosine with gravity.
 const HORIZONTAL: f64 = 1e-9;
@@ -62,8 +62,31 @@ impl Checker<'_> {
             let pointer = "/optimiser/unbounded_below";
             self.fault(Finding::new(pointer, floor.to_string(), expected));
         }
+        self.least_squares();
         for (k, text) in document.plot.trace.iter().enumerate() {
             self.location(&join("/plot/trace", k), text);
+        }
+    }
+
+    /// Least squares need the residuals of a misfit.
+    fn least_squares(&mut self) {
+        let optimiser = self.document.optimiser.as_ref();
+        let method = optimiser.and_then(|own| own.method);
+        let Some(OptimisationMethod::LeastSquares) = method else {
+            return;
+        };
+        let fits = match &self.document.objective {
+            Some(Objective::Minimise(WhichFunction::Named(name))) => {
+                let own = self.document.functions.get(name);
+                matches!(own, Some(Function::Misfit(_))) || self.damage.holds("functions", name)
+            }
+            Some(Objective::Minimise(WhichFunction::Written(_)) | Objective::Maximise(_))
+            | None => false,
+        };
+        if !fits {
+            let expected = "the objective to minimise a \"misfit\", or another method";
+            let finding = Finding::new("/optimiser/method", "least squares without one", expected);
+            self.fault(finding);
         }
     }
 
@@ -145,7 +168,7 @@ impl Checker<'_> {
         }
     }
 
-    fn function_name(&mut self, pointer: &str, name: &str) {
+    pub(super) fn function_name(&mut self, pointer: &str, name: &str) {
         let functions = &self.document.functions;
         if !functions.contains_key(name) && !self.damage.holds("functions", name) {
             let hint = advice(name, "functions", functions.keys().map(String::as_str));

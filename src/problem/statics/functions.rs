@@ -4,6 +4,7 @@ use super::mesh::of_file;
 use crate::math::Vec3;
 use crate::schema::Document;
 use crate::schema::functions::Function as Written;
+use crate::schema::misfit::{MeasuredNumber, Misfit, Variance};
 use crate::schema::statics::StressAggregate;
 use crate::structures::functions::{Aggregate, Function};
 
@@ -16,8 +17,26 @@ pub enum Asked {
     Frequency(usize),
     /// Smooth lower bound of all frequencies with this ρ \[Hz\].
     LowestFrequency(f64),
+    /// Mean square of the distances of other functions from measured values, in standard deviations.
+    Misfit {
+        /// The functions and their values.
+        numbers: Vec<MeasuredFunction>,
+        /// Whether the standard deviations are those of the data, and not only in proportion to them.
+        given: bool,
+    },
     /// Σ ((x − x0)/scale)² of the design.
     DistanceFromStart,
+}
+
+/// A measured value of a function.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct MeasuredFunction {
+    /// The function, by index.
+    pub function: usize,
+    /// The value, in the unit of the function.
+    pub value: f64,
+    /// One by its standard deviation.
+    pub weight: f64,
 }
 
 impl Asked {
@@ -34,7 +53,7 @@ impl Asked {
                 Function::Stress { .. } => "1",
             },
             Self::Frequency(_) | Self::LowestFrequency(_) => "Hz",
-            Self::DistanceFromStart => "1",
+            Self::Misfit { .. } | Self::DistanceFromStart => "1",
         }
     }
 }
@@ -99,6 +118,7 @@ fn of(document: &Document, function: &Written, cuts: usize) -> Asked {
             }
         }
         Written::Frequency(frequency) => return Asked::Frequency(frequency.mode - 1),
+        Written::Misfit(misfit) => return of_numbers(document, misfit),
         Written::LowestFrequency(lowest) => return Asked::LowestFrequency(lowest.rho),
         Written::Ks(_)
         | Written::InducedExponential(_)
@@ -116,4 +136,17 @@ fn of(document: &Document, function: &Written, cuts: usize) -> Asked {
             )
         }
     })
+}
+
+fn of_numbers(document: &Document, misfit: &Misfit) -> Asked {
+    let measured = |own: &MeasuredNumber| MeasuredFunction {
+        function: (document.functions.get_index_of(&own.function))
+            .expect("names are checked before"),
+        value: own.value,
+        weight: own.standard_deviation.map_or(1.0, |sd| 1.0 / sd),
+    };
+    Asked::Misfit {
+        numbers: misfit.numbers.iter().map(measured).collect(),
+        given: misfit.variance() == Variance::Given,
+    }
 }
