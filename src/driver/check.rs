@@ -156,14 +156,8 @@ pub(super) fn own_size(at: &Evaluated, f: usize) -> f64 {
         Function::Clearance { .. } => return length.max(at.function(f).value.abs()),
         // Its terms are squares of distances in standard deviations, whose last digits are those of the values.
         Function::Misfit { series } => {
-            let largest = |own: &Series<f64>| {
-                let data = own.data.values.iter().zip(&own.data.weights);
-                data.map(|(d, weight)| (d * weight).abs())
-                    .fold(0.0, f64::max)
-            };
-            let largest = series.iter().map(largest).fold(0.0, f64::max);
-            let value = at.function(f).value;
-            return value.abs().max(largest * value.abs().sqrt());
+            let value = at.function(f).value.abs();
+            return value.max(largest_datum(series) * value.sqrt());
         }
         Function::Duration => return time,
         Function::OfDesign { value, .. } => return value.abs().max(1.0),
@@ -176,6 +170,16 @@ pub(super) fn own_size(at: &Evaluated, f: usize) -> f64 {
         | Reduction::InducedExponential { .. } => size_of(at, of),
     };
     size.max(at.function(f).value.abs())
+}
+
+/// The largest of measured values, in standard deviations.
+pub(super) fn largest_datum(series: &[Series<f64>]) -> f64 {
+    let largest = |own: &Series<f64>| {
+        let data = own.data.values.iter().zip(&own.data.weights);
+        data.map(|(d, weight)| (d * weight).abs())
+            .fold(0.0, f64::max)
+    };
+    series.iter().map(largest).fold(0.0, f64::max)
 }
 
 /// The size of a quantity in a scene.

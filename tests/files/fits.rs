@@ -253,7 +253,8 @@ fn the_covariance_is_the_scatter_of_draws() {
             row[1] = json!(y + 0.01 * noise.normal());
         }
         let done = optimised(&parse(&drawn));
-        assert_eq!(done.outcome.status, Status::Converged);
+        let (counts, kkt) = (&done.outcome.counts, &done.outcome.kkt);
+        assert_eq!(done.outcome.status, Status::Converged, "{counts:?} {kkt:?}");
         let fit = done.optimum.fit.as_ref().expect("a fit");
         for (i, (name, value)) in truth.iter().enumerate() {
             squares[i] += (done.optimum.design[*name].value - value).powi(2) / DRAWS as f64;
