@@ -1,7 +1,7 @@
 //! Joints in a file.
 
 use super::mechanics::Point;
-use crate::quantity::{Quantity, Vector};
+use crate::quantity::{Degrees, Quantity, Vector};
 use flexbody_mechanics::model::DegreeOfFreedom;
 use schemars::JsonSchema;
 use serde::Deserialize;
@@ -74,6 +74,24 @@ pub struct TurnStart {
     /// Its rate, default that of the bodies' velocities.
     #[schemars(extend("unit" = "rad/s"))]
     pub rate: Option<Quantity>,
+    /// The angle in degrees, instead of `angle`.
+    #[schemars(extend("unit" = "°"))]
+    pub degrees: Option<Degrees>,
+    /// The rate in degrees per second, instead of `rate`.
+    #[schemars(extend("unit" = "°/s"))]
+    pub degrees_per_second: Option<Degrees>,
+}
+
+impl TurnStart {
+    /// The angle \[rad\], if it is given.
+    pub fn angle(&self) -> Option<Quantity> {
+        self.angle.or(self.degrees.map(|degrees| degrees.0))
+    }
+
+    /// The rate \[rad/s\], if it is given.
+    pub fn rate(&self) -> Option<Quantity> {
+        self.rate.or(self.degrees_per_second.map(|rate| rate.0))
+    }
 }
 
 /// Initial displacement and rate.
@@ -92,7 +110,7 @@ impl JointStart {
     /// Position and rate of a degree of freedom; `None` if the start does not name it.
     pub fn of(&self, dof: DegreeOfFreedom) -> Option<[Option<Quantity>; 2]> {
         match dof {
-            DegreeOfFreedom::Rotation => self.turn.as_ref().map(|turn| [turn.angle, turn.rate]),
+            DegreeOfFreedom::Rotation => self.turn.as_ref().map(|turn| [turn.angle(), turn.rate()]),
             DegreeOfFreedom::Translation => {
                 let slide = self.slide.as_ref();
                 slide.map(|slide| [slide.displacement, slide.rate])

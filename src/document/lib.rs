@@ -11,6 +11,7 @@ pub mod measured;
 pub mod mechanics;
 pub mod modal;
 pub mod names;
+pub mod parts;
 pub mod prepared;
 pub mod quantity;
 pub mod section;
@@ -26,6 +27,7 @@ use indexmap::IndexMap;
 use joints::Joint;
 use loads::Load;
 use mechanics::{AssemblyVelocity, Body};
+use parts::{Defaults, Part, Use};
 use quantity::{Quantity, Vector};
 use schemars::JsonSchema;
 use serde::Deserialize;
@@ -86,6 +88,15 @@ pub struct Document {
     #[serde(default)]
     #[schemars(extend("unit" = OF_PARAMETERS))]
     pub parameters: IndexMap<String, Quantity>,
+    /// Parts by name: groups of bodies, joints, loads and drives that are defined once.
+    #[serde(default, rename = "parts")]
+    pub _parts: IndexMap<String, Part>,
+    /// Uses of parts by name. The body "thigh" of a part is "NAME/thigh" in the machine.
+    #[serde(default, rename = "use")]
+    pub _use: IndexMap<String, Use>,
+    /// Keys that bodies and joints have unless they give their own.
+    #[serde(default, rename = "defaults")]
+    pub _defaults: Defaults,
     /// Bodies by name.
     #[serde(default)]
     pub bodies: IndexMap<String, Body>,

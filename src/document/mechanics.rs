@@ -3,10 +3,12 @@
 use super::elements::Elements;
 use super::flexible::Beam;
 use super::modal::Modal;
-use crate::quantity::{Quantity, Vector};
+use crate::quantity::{Degrees, Quantity, Vector};
+use flexbody_mathematics::math::{Mat3, Vec3};
 use indexmap::IndexMap;
 use schemars::JsonSchema;
 use serde::Deserialize;
+use std::sync::Arc;
 
 /// A body: a shape with its mass or density, or an explicit mass, centre of mass and inertia, or a beam
 /// or a body of files with elastic coordinates.
@@ -35,10 +37,11 @@ pub struct Body {
     pub elements: Option<Box<Elements>>,
     /// A body with elastic coordinates from files of other codes, instead of all above.
     pub modal: Option<Box<Modal>>,
+    /// Mass, centre of mass and inertia of a solid from its surface, instead of all above.
+    pub mass_properties: Option<Box<Surface>>,
     /// Named points in body axes from their origin (the centre of the shape, the start of a beam).
     #[serde(default)]
-    #[schemars(extend("unit" = "m"))]
-    pub points: IndexMap<String, Vector>,
+    pub points: IndexMap<String, BodyPoint>,
     /// Placement at the start; by default its axes are those of ground.
     #[serde(default)]
     pub place: Place,
@@ -51,6 +54,98 @@ impl Body {
     pub fn is_flexible(&self) -> bool {
         self.beam.is_some() || self.elements.is_some() || self.modal.is_some()
     }
+}
+
+/// A homogeneous solid inside a closed surface of triangles. Its axes are those of the file.
+#[derive(Clone, Debug, Deserialize, JsonSchema)]
+#[serde(deny_unknown_fields)]
+pub struct Surface {
+    /// Path of an STL file, relative to the directory of the problem file.
+    pub stl: String,
+    /// Density.
+    #[schemars(extend("unit" = "kg/m³", "exclusiveMinimum" = 0))]
+    pub density: Quantity,
+    /// Unit of the coordinates of the file, default "m".
+    #[serde(default)]
+    pub unit: LengthUnit,
+    /// What the file gives for the density 1 kg/m³, once it is read.
+    #[serde(skip)]
+    #[schemars(skip)]
+    pub solid: Option<Arc<Solid>>,
+}
+
+/// A solid of the density 1 kg/m³.
+#[derive(Clone, Debug)]
+pub struct Solid {
+    /// Volume \[m³\].
+    pub volume: f64,
+    /// Its centre from the origin \[m\].
+    pub centre: Vec3<f64>,
+    /// Inertia about the centre \[m⁵\].
+    pub inertia: Mat3<f64>,
+    /// The outermost vertices of its surface in several directions \[m\].
+    pub outermost: Vec<Vec3<f64>>,
+    /// Whether the file orders the vertices of its triangles as seen from inside.
+    pub inwards: bool,
+}
+
+/// A unit of length.
+#[derive(Clone, Copy, Debug, Default, Deserialize, JsonSchema)]
+#[serde(rename_all = "snake_case")]
+pub enum LengthUnit {
+    /// Metres.
+    #[default]
+    M,
+    /// Centimetres.
+    Cm,
+    /// Millimetres.
+    Mm,
+    /// Inches.
+    Inch,
+}
+
+impl LengthUnit {
+    /// Its length \[m\].
+    pub fn metres(self) -> f64 {
+        match self {
+            Self::M => 1.0,
+            Self::Cm => 0.01,
+            Self::Mm => 0.001,
+            Self::Inch => 0.0254,
+        }
+    }
+}
+
+/// A named point of a body.
+#[derive(Clone, Debug, Deserialize, JsonSchema)]
+#[serde(untagged)]
+pub enum BodyPoint {
+    /// Coordinates in body axes from their origin.
+    #[schemars(extend("unit" = "m"))]
+    Coordinates(Vector),
+    /// A point on the line through two others.
+    Between(Between),
+}
+
+impl BodyPoint {
+    /// Its coordinates, if the file gives them.
+    pub fn coordinates(&self) -> Option<&Vector> {
+        match self {
+            Self::Coordinates(own) => Some(own),
+            Self::Between(_) => None,
+        }
+    }
+}
+
+/// A point on the line through two named points of the same body.
+#[derive(Clone, Debug, Deserialize, JsonSchema)]
+#[serde(deny_unknown_fields)]
+pub struct Between {
+    /// Names of both points.
+    pub between: [String; 2],
+    /// Where it is: 0 at the first, 1 at the second; other numbers are on the line beyond them.
+    #[schemars(extend("unit" = "1"))]
+    pub fraction: Quantity,
 }
 
 /// A homogeneous solid, centred at the origin of the body's axes.
@@ -183,16 +278,55 @@ impl Turns {
     }
 }
 
-/// A rotation by an angle about an axis.
-#[derive(Clone, Debug, Deserialize, JsonSchema)]
+/// A rotation in one of its forms: an axis with an angle, an axis of the ground with an angle, a sequence of
+/// angles about the body's own axes, a quaternion, or a matrix.
+#[derive(Clone, Debug, Default, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 pub struct Turn {
-    /// Axis of any length but zero.
+    /// Axis of any length but zero, with `angle` or `degrees`.
     #[schemars(extend("unit" = "1"))]
-    pub axis: Vector,
+    pub axis: Option<Vector>,
     /// Angle by the right-hand rule.
     #[schemars(extend("unit" = "rad"))]
-    pub angle: Quantity,
+    pub angle: Option<Quantity>,
+    /// The angle in degrees instead, or with `sequence` its three angles.
+    pub degrees: Option<InDegrees>,
+    /// Rotation about x.
+    #[schemars(extend("unit" = "°"))]
+    pub x: Option<Degrees>,
+    /// Rotation about y.
+    #[schemars(extend("unit" = "°"))]
+    pub y: Option<Degrees>,
+    /// Rotation about z.
+    #[schemars(extend("unit" = "°"))]
+    pub z: Option<Degrees>,
+    /// Three of x, y and z: rotations about these axes of the body, each as those before it have turned them;
+    /// "zyx" are yaw, pitch and roll. With `angles` or `degrees`.
+    pub sequence: Option<String>,
+    /// Angles of `sequence` in radians.
+    #[schemars(extend("unit" = "rad"))]
+    pub angles: Option<[Quantity; 3]>,
+    /// Unit quaternion w, x, y, z: cos(angle/2), then the unit axis times sin(angle/2). It is normalised.
+    #[schemars(extend("unit" = "1"))]
+    pub quaternion: Option<[Quantity; 4]>,
+    /// Rows of the rotation matrix; its columns are the axes of the turned body.
+    #[schemars(extend(
+        "unit" = "1",
+        "design_variable" = "the entries of a rotation matrix depend on each other; design an angle"
+    ))]
+    pub matrix: Option<[[f64; 3]; 3]>,
+}
+
+/// One angle or three, in degrees.
+#[derive(Clone, Debug, Deserialize, JsonSchema)]
+#[serde(untagged)]
+pub enum InDegrees {
+    /// One.
+    #[schemars(extend("unit" = "°"))]
+    One(Degrees),
+    /// Three.
+    #[schemars(extend("unit" = "°"))]
+    Three([Degrees; 3]),
 }
 
 /// Velocity of one body at the start.

@@ -15,6 +15,8 @@ pub struct Quantity {
     pub value: f64,
     /// Index of the design variable that replaces it, if any.
     pub variable: Option<usize>,
+    /// Factor of the design variable: the value in SI per unit of the file.
+    factor: f64,
 }
 
 /// Three quantities: the components of a vector.
@@ -24,6 +26,8 @@ pub type Vector = [Quantity; 3];
 const VARIABLE: &str = "variable";
 /// Key of the value in the form of a bound quantity.
 const VALUE: &str = "value";
+/// A degree in radians.
+const DEGREE: f64 = std::f64::consts::PI / 180.0;
 
 impl Quantity {
     /// A number that no design variable changes.
@@ -31,12 +35,17 @@ impl Quantity {
         Self {
             value,
             variable: None,
+            factor: 1.0,
         }
     }
 
     /// Its value at the design `x`.
     pub fn get<S: Scalar>(&self, x: &[S]) -> S {
-        self.variable.map_or(S::from(self.value), |index| x[index])
+        match self.variable {
+            None => S::from(self.value),
+            Some(index) if self.factor == 1.0 => x[index],
+            Some(index) => x[index] * self.factor,
+        }
     }
 
     /// The form from which a bound [`Quantity`] is deserialised.
@@ -86,7 +95,11 @@ impl<'de> Visitor<'de> for QuantityVisitor {
             }
         }
         let value = value.ok_or_else(|| A::Error::missing_field(VALUE))?;
-        Ok(Quantity { value, variable })
+        Ok(Quantity {
+            value,
+            variable,
+            factor: 1.0,
+        })
     }
 }
 
@@ -107,5 +120,34 @@ impl JsonSchema for Quantity {
 
     fn json_schema(_: &mut SchemaGenerator) -> Schema {
         json_schema!({ "type": "number", "design_variable": true })
+    }
+}
+
+/// An angle or its rate that the file gives in degrees; the quantity is in radians.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Degrees(pub Quantity);
+
+impl<'de> Deserialize<'de> for Degrees {
+    fn deserialize<D: Deserializer<'de>>(deserializer: D) -> Result<Self, D::Error> {
+        let written = Quantity::deserialize(deserializer)?;
+        Ok(Self(Quantity {
+            value: written.value * DEGREE,
+            variable: written.variable,
+            factor: DEGREE,
+        }))
+    }
+}
+
+impl JsonSchema for Degrees {
+    fn schema_name() -> Cow<'static, str> {
+        "Degrees".into()
+    }
+
+    fn inline_schema() -> bool {
+        true
+    }
+
+    fn json_schema(generator: &mut SchemaGenerator) -> Schema {
+        Quantity::json_schema(generator)
     }
 }

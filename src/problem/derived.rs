@@ -75,14 +75,26 @@ impl Expressions {
         source: &Source,
     ) -> Result<Self, Vec<Finding>> {
         let parameters = document["parameters"].as_object();
-        let mut findings = names_of(parameters);
+        let origins = &source.origins;
+        let own = |name: &String| !origins.parameters.contains_key(&of_parameter(name));
+        let named = parameters
+            .into_iter()
+            .flat_map(Map::keys)
+            .filter(|name| own(name));
+        let mut findings = names_of("/parameters", named);
         let mut parsed: IndexMap<String, Expression<String>> = IndexMap::new();
+        let exists = |name: &String| parameters.is_some_and(|all| all.contains_key(name));
         for pointer in &structure.expressions {
+            if let Some(made) = origins.made.get(pointer) {
+                parsed.insert(pointer.clone(), made.clone());
+                continue;
+            }
             let text = document.pointer(pointer).and_then(Value::as_str);
             let text = text.and_then(|text| text.strip_prefix(MARK)).unwrap_or("");
             match Expression::parse(text) {
                 Ok(expression) => {
-                    parsed.insert(pointer.clone(), expression);
+                    let scope = origins.scope(pointer);
+                    parsed.insert(pointer.clone(), in_scope(expression, scope, exists));
                 }
                 Err(fault) => {
                     let mut finding = Finding::new(pointer, fault.found, fault.expected);
@@ -96,7 +108,8 @@ impl Expressions {
         for (pointer, expression) in &parsed {
             for name in expression.names() {
                 if !parameters.contains_key(name) {
-                    let known = parameters.keys().map(String::as_str);
+                    let scope = origins.scope(pointer);
+                    let known = parameters.keys().filter_map(|name| seen_from(scope, name));
                     let hint = match parameters.is_empty() {
                         true => Some("the file has no \"parameters\"".to_owned()),
                         false => advice(name, "parameters", known),
@@ -222,7 +235,7 @@ impl Expressions {
                 continue;
             }
             if let Some(number) = number.filter(|own| own.unit != OF_PARAMETERS) {
-                share_unit(expression, (&number.unit, &values), variables);
+                share_unit(expression, (&number.unit, &values, &self.list), variables);
             }
             let place = derived.variables + derived.list.len();
             let of = |name: &String| match places.get(name) {
@@ -264,20 +277,41 @@ impl Expressions {
     }
 }
 
-/// Gives the unit of a number to the variable of the only parameter of its expression, if the expression is
+/// The value of an expression if each parameter that no expression gives is `x`.
+fn all_at(expression: &Expression<String>, list: &IndexMap<String, Written>, x: f64) -> f64 {
+    expression.value(&|name: &String| match list.get(&of_parameter(name)) {
+        Some(own) => all_at(&own.expression, list, x),
+        None => x,
+    })
+}
+
+/// The parameters that no expression gives and that an expression follows from.
+fn bases<'a>(
+    expression: &'a Expression<String>,
+    list: &'a IndexMap<String, Written>,
+) -> Vec<&'a String> {
+    let names = expression.names().into_iter();
+    let all = names.flat_map(|name| match list.get(&of_parameter(name)) {
+        Some(own) => bases(&own.expression, list),
+        None => vec![name],
+    });
+    all.collect()
+}
+
+/// Gives the unit of a number to the variable of the only parameter that its expression follows from, if it is
 /// proportional to it.
 fn share_unit(
     expression: &Expression<String>,
-    (unit, values): (&str, &IndexMap<String, f64>),
+    (unit, values, list): (&str, &IndexMap<String, f64>, &IndexMap<String, Written>),
     variables: &mut [Variable],
 ) {
-    let names = expression.names();
+    let names = bases(expression, list);
     let [name, others @ ..] = &names[..] else {
         return;
     };
     // At values of its size, also if it is zero in the file.
     let size = values[*name].abs().max(1.0);
-    let at = |x: f64| expression.value(&|_: &String| x * size) / (x * size);
+    let at = |x: f64| all_at(expression, list, x * size) / (x * size);
     let ratio = at(1.0);
     let proportional = [0.6, 1.7]
         .iter()
@@ -286,9 +320,7 @@ fn share_unit(
         return;
     }
     let path = of_parameter(name);
-    let own = variables
-        .iter_mut()
-        .filter(|own| own.paths == [path.clone()]);
+    let own = variables.iter_mut().filter(|own| own.paths.contains(&path));
     for variable in own.filter(|own| own.unit == OF_PARAMETERS) {
         unit.clone_into(&mut variable.unit);
     }
@@ -311,9 +343,35 @@ fn entries(document: &Value, pointer: &str) -> Vec<String> {
         .collect()
 }
 
-/// Faults of the names of parameters.
-fn names_of(parameters: Option<&Map<String, Value>>) -> Vec<Finding> {
-    let names = parameters.into_iter().flat_map(Map::keys);
+/// The name in the document of a parameter of a use.
+pub(super) fn parameter_of(used: &str, name: &str) -> String {
+    format!("{used}/{name}")
+}
+
+/// An expression of a use, whose names are those of its own parameters where `exists` knows them.
+pub(super) fn in_scope(
+    expression: Expression<String>,
+    scope: Option<&str>,
+    exists: impl Fn(&String) -> bool,
+) -> Expression<String> {
+    let Some(scope) = scope else {
+        return expression;
+    };
+    let of = |name: &String| {
+        let own = parameter_of(scope, name);
+        Ok::<_, ()>(if exists(&own) { own } else { name.clone() })
+    };
+    expression.named(&mut { of }).unwrap_or(expression)
+}
+
+/// The name by which expressions of a use, or of the machine, know a parameter; none if they do not.
+fn seen_from<'a>(scope: Option<&str>, name: &'a str) -> Option<&'a str> {
+    let own = scope.and_then(|scope| name.strip_prefix(scope)?.strip_prefix('/'));
+    own.or(Some(name)).filter(|name| is_name(name))
+}
+
+/// Faults of the names of parameters at a pointer.
+pub(super) fn names_of<'a>(pointer: &str, names: impl Iterator<Item = &'a String>) -> Vec<Finding> {
     let wrong = names.filter_map(|name| {
         let expected = match is_name(name) {
             true if reserved().any(|own| own == name) => "a name that has no meaning yet",
@@ -321,13 +379,13 @@ fn names_of(parameters: Option<&Map<String, Value>>) -> Vec<Finding> {
             false => "letters, digits and underscores, and no digit first",
         };
         let found = format!("the name \"{name}\"");
-        Some(Finding::new(of_parameter(name), found, expected).of_key())
+        Some(Finding::new(join(pointer, name), found, expected).of_key())
     });
     wrong.collect()
 }
 
 /// The bytes of the file from byte `at` of an expression on; the whole text if it is written with escapes.
-fn place(source: &Source, pointer: &str, at: usize, text: &str) -> Part {
+pub(super) fn place(source: &Source, pointer: &str, at: usize, text: &str) -> Part {
     let Some(bytes) = source.value(pointer) else {
         return Part::Value;
     };

@@ -12,7 +12,7 @@ use crate::math::Vec3;
 use crate::model::Model;
 use crate::quantity::vector;
 use crate::schema::functions::Function;
-use crate::schema::mechanics::{Body, Shape};
+use crate::schema::mechanics::{Body, BodyPoint, Shape};
 use crate::schema::{Document, View};
 use std::f64::consts::TAU;
 
@@ -192,6 +192,10 @@ fn outline(body: &Body, centre: Vec3<f64>, x: &[f64]) -> Outline {
             (radius * c, radius * s)
         })
     };
+    let surface = body.mass_properties.as_ref();
+    if let Some(solid) = surface.and_then(|own| own.solid.as_ref()) {
+        return Outline::Hull(solid.outermost.iter().map(|p| p - centre).collect());
+    }
     match &body.shape {
         Some(Shape::Box { size }) => {
             let half = vector(size, x) * 0.5;
@@ -221,8 +225,9 @@ fn outline(body: &Body, centre: Vec3<f64>, x: &[f64]) -> Outline {
         }
         Some(Shape::Sphere { radius }) => Outline::Sphere(radius.get(x)),
         Some(Shape::Point) | None => Outline::Spokes(
-            body.points
-                .values()
+            // Points between others lie on lines that are drawn.
+            (body.points.values())
+                .filter_map(BodyPoint::coordinates)
                 .map(|p| vector(p, x) - centre)
                 .collect(),
         ),

@@ -63,19 +63,47 @@ impl Faults {
             .map(|finding| locate(finding, file, source, overrides))
             .collect();
         list.sort_by_key(|fault| (fault.line, fault.column));
+        if !source.origins.is_empty() {
+            // One entry of a part or default is used several times.
+            let mut once: Vec<Fault> = Vec::new();
+            for fault in list {
+                if !once.iter().any(|other| fault.is_again(other)) {
+                    once.push(fault);
+                }
+            }
+            list = once;
+        }
         Self { list }
+    }
+}
+
+impl Fault {
+    /// Whether another fault says the same of the same place.
+    fn is_again(&self, other: &Self) -> bool {
+        self.line > 0
+            && (self.line, self.column) == (other.line, other.column)
+            && (&self.found, &self.expected) == (&other.found, &other.expected)
+            && self.origin == other.origin
+            && self.path != other.path
     }
 }
 
 /// The fault of a finding.
 fn locate(finding: Finding, file: &str, source: &Source, overrides: &[Override]) -> Fault {
-    let overridden = overrides.iter().rev().find(|o| o.holds(&finding.pointer));
+    let written = source.origins.resolve(&finding.pointer);
+    let overridden = overrides.iter().rev().find(|o| o.holds(&written));
     let bytes = match (&finding.part, overridden) {
         (Part::File, _) | (_, Some(_)) => None,
         (Part::Bytes(bytes), None) => Some(bytes.clone()),
         (Part::Key, None) => source.key(&finding.pointer),
         (Part::Value, None) => source.value(&finding.pointer),
     };
+    let used = source.origins.used(&finding.pointer);
+    let used = used.map(|used| format!("this is in the use \"{used}\""));
+    let hint = [finding.hint, used].into_iter().flatten();
+    let hint = hint.collect::<Vec<_>>().join("; ");
+    let (other, source, _) = source.holding(&finding.pointer);
+    let file = other.unwrap_or(file);
     let (line, column) = bytes
         .clone()
         .map_or((0, 0), |bytes| source.place(bytes.start));
@@ -85,7 +113,7 @@ fn locate(finding: Finding, file: &str, source: &Source, overrides: &[Override])
         column,
         found: readable(&finding.found),
         expected: readable(&finding.expected),
-        hint: finding.hint.as_deref().map(readable),
+        hint: (!hint.is_empty()).then(|| readable(&hint)),
         origin: overridden.map_or_else(|| visible(file), |o| readable(&format!("--set {o}"))),
         excerpt: bytes.map(|bytes| excerpt(source, line, column, bytes)),
     }

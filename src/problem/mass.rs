@@ -1,5 +1,6 @@
 //! Mass properties of bodies.
 
+use crate::math::scalar::lift3;
 use crate::math::{Mat3, Scalar, Vec3};
 use crate::quantity::{Quantity, vector};
 use crate::schema::mechanics::{Body, Inertia, Shape};
@@ -24,6 +25,17 @@ pub fn mass_properties<S: Scalar>(body: &Body, x: &[S]) -> MassProperties<S> {
             mass: S::zero(),
             centre: Vec3::zeros(),
             inertia: Mat3::zeros(),
+        };
+    }
+    if let Some(surface) = &body.mass_properties {
+        let density = surface.density.get(x);
+        let of = surface.solid.as_ref();
+        return MassProperties {
+            mass: density * of.map_or(0.0, |solid| solid.volume),
+            centre: of.map_or(Vec3::zeros(), |solid| lift3(&solid.centre)),
+            inertia: of.map_or(Mat3::zeros(), |solid| {
+                solid.inertia.map(|own| density * own)
+            }),
         };
     }
     let mass = match (&body.shape, &body.density) {

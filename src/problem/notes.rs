@@ -6,11 +6,12 @@ use crate::schema::Document;
 use crate::system::left_out;
 
 impl Problem {
-    /// Redundant rows of joints, inertias of no solid within the tolerance of the input, and edges that axes alone make
-    /// rigid.
+    /// Redundant rows of joints, inertias of no solid within the tolerance of the input, surfaces seen from inside, and
+    /// edges that axes alone make rigid.
     pub fn notes_of_input(&self) -> Vec<String> {
         let mut notes = left_out::told(&self.redundant);
         notes.extend(self.inertias());
+        notes.extend(inwards(&self.written));
         notes.extend(edges(&self.written));
         notes
     }
@@ -39,6 +40,17 @@ fn edges(document: &Document) -> impl Iterator<Item = String> {
         Some(format!(
             "body \"{name}\": its axes are clamped at \"{set}\", where no point holds it: the nodes there keep their places \
              among each other, and the body is stiffer than in \"chord\" axes"
+        ))
+    })
+}
+
+fn inwards(document: &Document) -> impl Iterator<Item = String> {
+    document.bodies.iter().filter_map(|(name, body)| {
+        let own = body.mass_properties.as_ref()?;
+        let solid = own.solid.as_ref().filter(|solid| solid.inwards)?;
+        Some(format!(
+            "body \"{name}\": the triangles of {} are ordered as seen from inside; its volume is taken as {:.6e} m³",
+            own.stl, solid.volume
         ))
     })
 }

@@ -2,13 +2,14 @@
 
 use super::elements;
 use super::mass::mass_properties;
-use crate::math::rotation::{Quat, compose, from_axis_angle, matrix};
+use super::turns::rotation;
+use crate::math::rotation::{Quat, compose, matrix};
 use crate::math::scalar::lift3;
 use crate::math::{Mat3, Scalar, Vec3};
 use crate::quantity::{Quantity, Vector, vector};
 use crate::schema::Document;
 use crate::schema::joints::{Axis, Ends};
-use crate::schema::mechanics::{Location, Point};
+use crate::schema::mechanics::{BodyPoint, Location, Point};
 
 /// Message of a failed look-up. A checked file has all names.
 const CHECKED: &str = "names are checked when a problem is read";
@@ -135,8 +136,7 @@ impl<'a, S: Scalar> Assembly<'a, S> {
         // from which the turn starts comes last.
         let mut turn = Pose::ground().orientation;
         for one in place.turn.iter().flat_map(|turns| turns.list()) {
-            let axis = vector(&one.axis, self.x);
-            turn = compose(&from_axis_angle(&axis, one.angle.get(self.x)), &turn);
+            turn = compose(&rotation(one, self.x), &turn);
         }
         orientation = compose(&orientation, &turn);
         let rotation = matrix(&orientation);
@@ -169,10 +169,15 @@ impl<'a, S: Scalar> Assembly<'a, S> {
     }
 
     /// A named point of a body, from the origin of its axes \[m\].
-    fn point(&self, body: &str, point: &str) -> Vec3<S> {
-        let body = self.document.bodies.get(body).expect(CHECKED);
-        if let Some(point) = body.points.get(point) {
-            return vector(point, self.x);
+    fn point(&self, name: &str, point: &str) -> Vec3<S> {
+        let body = self.document.bodies.get(name).expect(CHECKED);
+        match body.points.get(point) {
+            Some(BodyPoint::Coordinates(point)) => return vector(point, self.x),
+            Some(BodyPoint::Between(on)) => {
+                let [a, b] = on.between.each_ref().map(|end| self.point(name, end));
+                return a + (b - a) * on.fraction.get(self.x);
+            }
+            None => {}
         }
         if let Some(elements) = &body.elements {
             return lift3(&elements::place(self.document, elements, point));

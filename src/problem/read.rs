@@ -1,11 +1,12 @@
 //! Reads the text of a problem file: a problem, or all of its faults.
 
-use super::bounds;
 use super::check::check;
 use super::derived::{Derived, Expressions};
 use super::elements;
+use super::expansion;
 use super::fault::Faults;
-use super::finding::{Finding, Part};
+use super::file_text::{self, Unread};
+use super::finding::Finding;
 use super::first_scene::{
     collapsed, driven_twice, oblique, too_many, unassembled, unstarted, without_inertia,
 };
@@ -16,12 +17,12 @@ use super::placement::placement_order;
 use super::pointer::join;
 use super::points;
 use super::prune::prune;
-use super::source::{Duplicate, Source};
+use super::source::Source;
 use super::statics::expand::expand;
 use super::statics::per_thickness;
 use super::statics::{Asked, Statics};
 use super::structure::walk;
-use super::syntax;
+use super::surfaces;
 use super::text;
 use super::units::{mismatched, name_units};
 use super::variables::{bind, variables};
@@ -36,7 +37,6 @@ use crate::structures::quality::MeshFault;
 use crate::system::redundancy;
 use serde_json::Value;
 use sha2::{Digest, Sha256};
-use std::io::ErrorKind;
 use std::path::Path;
 use std::sync::Arc;
 
@@ -54,26 +54,9 @@ const NEAREST: &str = "squared distance from the start";
 /// Reads a problem file.
 pub(super) fn load(path: &Path, overrides: &[Override]) -> Result<Problem, Faults> {
     let file = path.display().to_string();
-    let bytes = bounds::read(path).map_err(|error| {
-        let found = match error.kind() {
-            _ if path.is_dir() => "a directory".to_owned(),
-            ErrorKind::NotFound => "no file".to_owned(),
-            _ => error.to_string(),
-        };
-        Faults::unreadable(&file, &found, "a problem file")
-    })?;
-    if bytes.len() > bounds::LARGEST {
-        let found = format!("a file of more than {} MB", bounds::LARGEST >> 20);
-        return Err(Faults::unreadable(&file, &found, "a problem file"));
-    }
-    let text = String::from_utf8(bytes).map_err(|error| {
-        let at = error.utf8_error().valid_up_to();
-        let text = String::from_utf8_lossy(error.as_bytes());
-        let finding = Finding {
-            part: Part::Bytes(at..at + char::REPLACEMENT_CHARACTER.len_utf8()),
-            ..Finding::new("", "a byte that is not UTF-8", "a text in UTF-8")
-        };
-        Faults::locate(vec![finding], &file, &Source::plain(&text), &[])
+    let text = file_text::read(path).map_err(|unread| match unread {
+        Unread::Missing(found) => Faults::unreadable(&file, &found, "a problem file"),
+        Unread::Faulty(faults) => faults,
     })?;
     parse(&text, &file, overrides)
 }
@@ -82,27 +65,29 @@ pub(super) fn load(path: &Path, overrides: &[Override]) -> Result<Problem, Fault
 pub(super) fn parse(written: &str, file: &str, overrides: &[Override]) -> Result<Problem, Faults> {
     // A text may begin with a byte order mark, JSON may not.
     let written = written.strip_prefix('\u{feff}').unwrap_or(written);
-    let plain = || Source::plain(written);
-    if let Some(finding) = bounds::exceeded(written) {
-        return Err(Faults::locate(vec![finding], file, &plain(), &[]));
-    }
-    let mut document: Value = serde_json::from_str(written).map_err(|error| {
-        let finding = syntax::fault(written, &error);
-        Faults::locate(vec![finding], file, &plain(), &[])
-    })?;
-    let source = Source::index(written);
-    let mut findings: Vec<Finding> = source.duplicates.iter().map(twice).collect();
+    let mut document = file_text::json(written, file)?;
+    let mut source = Source::index(written);
+    let mut findings: Vec<Finding> = source.duplicates.iter().map(expansion::twice).collect();
+    expansion::read(&mut document, file, &mut source)?;
     for change in overrides {
         findings.extend(change.apply(&mut document).err());
     }
     findings.extend(text::faults(&document));
+    let mut original = None;
+    if expansion::is_needed(&document) {
+        original = Some(document.clone());
+        if let Err(wrong) = expansion::expand(&mut document, &mut source) {
+            findings.extend(wrong);
+            return Err(Faults::locate(findings, file, &source, overrides));
+        }
+    }
     let mut structure = walk(&document, schema::schema());
     let faults = |findings| Err(Faults::locate(findings, file, &source, overrides));
     let mut expressions = Expressions::default();
     let original = match structure.expressions.is_empty() {
-        true => None,
+        true => original,
         false => {
-            let whole = document.clone();
+            let whole = original.unwrap_or_else(|| document.clone());
             expressions = match Expressions::evaluate(&document, &structure, &source) {
                 Ok(expressions) => expressions,
                 Err(wrong) => {
@@ -116,6 +101,7 @@ pub(super) fn parse(written: &str, file: &str, overrides: &[Override]) -> Result
             Some(whole)
         }
     };
+    source.origins.name_units(&mut structure.numbers);
     findings.extend(structure.findings.iter().cloned());
     let mut sound = document.clone();
     let Value::Object(entries) = &mut sound else {
@@ -131,7 +117,10 @@ pub(super) fn parse(written: &str, file: &str, overrides: &[Override]) -> Result
     };
     // Other files are read only if the document has no faults.
     let content = match structure.findings.is_empty() {
-        true => modal::load(&mut written, (file, &source))?,
+        true => {
+            let content = modal::load(&mut written, (file, &source))?;
+            content + &surfaces::load(&mut written, (file, &source))?
+        }
         false => String::new(),
     };
     findings.extend(check(&written, &damage));
@@ -161,6 +150,7 @@ pub(super) fn parse(written: &str, file: &str, overrides: &[Override]) -> Result
     match deserialise(&sound) {
         Ok(mut bound) => {
             modal::share(&written, &mut bound);
+            surfaces::share(&written, &mut bound);
             elements::share(&written, &mut bound);
             let document = original.unwrap_or(document);
             let mut problem = problem(document, (bound, &content), order, variables);
@@ -302,19 +292,6 @@ pub(super) fn lowering(problem: &Problem) -> Lowering {
     let real = |x: &[f64]| problem.unlowered_scene(x);
     let dual = |x: &[Dual]| problem.unlowered_scene(x);
     Lowering::find(&real, &dual, &variables)
-}
-
-/// The fault of a key that occurs twice.
-fn twice(duplicate: &Duplicate) -> Finding {
-    let Duplicate {
-        key, first_line, ..
-    } = duplicate;
-    let found = format!("the key \"{key}\" a second time");
-    let expected = format!("each key once, and it is on line {first_line}");
-    Finding {
-        part: Part::Bytes(duplicate.bytes.clone()),
-        ..Finding::new(&duplicate.pointer, found, expected)
-    }
 }
 
 /// Deserialises a document.

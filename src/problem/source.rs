@@ -1,5 +1,6 @@
 //! The text of a problem file, with the places of its keys and values.
 
+use super::origins::Origins;
 use super::pointer::join;
 use std::collections::HashMap;
 use std::ops::Range;
@@ -11,6 +12,10 @@ pub struct Source {
     spans: HashMap<String, Span>,
     /// Keys that occur twice in an object.
     pub duplicates: Vec<Duplicate>,
+    /// Where the entries of a written-out document come from.
+    pub origins: Origins,
+    /// Texts of other files: the pointer where their content stands, their name, and the text.
+    pub files: Vec<(String, String, Source)>,
 }
 
 /// A key that occurs twice in an object.
@@ -71,15 +76,29 @@ impl Source {
         piece.lines().next().unwrap_or("")
     }
 
+    /// The text that has the entry of a document, with its name if it is another file, and the pointer there.
+    pub fn holding(&self, pointer: &str) -> (Option<&str>, &Self, String) {
+        let own = self.origins.resolve(pointer);
+        let mut files = self.files.iter();
+        let other = files.find_map(|(at, name, source)| {
+            let below = own.strip_prefix(at.as_str())?;
+            let inside = below.is_empty() || below.starts_with('/');
+            inside.then(|| (Some(name.as_str()), source, below.to_owned()))
+        });
+        other.unwrap_or((None, self, own))
+    }
+
     /// Bytes of the key at a pointer; of the value if it is an item of a list.
     pub fn key(&self, pointer: &str) -> Option<Range<usize>> {
-        let span = self.span(pointer)?;
+        let (_, source, pointer) = self.holding(pointer);
+        let span = source.span(&pointer)?;
         Some(span.key.clone().unwrap_or_else(|| span.value.clone()))
     }
 
     /// Bytes of the value at a pointer.
     pub fn value(&self, pointer: &str) -> Option<Range<usize>> {
-        self.span(pointer).map(|span| span.value.clone())
+        let (_, source, pointer) = self.holding(pointer);
+        source.span(&pointer).map(|span| span.value.clone())
     }
 
     /// The entry at a pointer, or the nearest one above it.

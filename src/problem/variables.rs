@@ -242,6 +242,15 @@ impl<'a> Checker<'a> {
             self.fault(Finding::new(&upper, found, expected));
             return;
         }
+        if let (Some(low), Some(high)) = (written.lower, written.upper)
+            && low == high
+            && low != start
+        {
+            let found = format!("the start {start}{unit} of {path}");
+            let expected = format!("{low}{unit}, at which both bounds fix the variable");
+            self.fault(Finding::new(&lower, found, expected));
+            return;
+        }
         if let Some(low) = written.lower.filter(|&low| start < low) {
             let found = format!("the lower bound {low}");
             let expected = format!("at most the start {start}{unit}, the value of {path}");

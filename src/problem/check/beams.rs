@@ -16,7 +16,8 @@ impl Checker<'_> {
     pub(super) fn beam(&mut self, pointer: &str, body: &Body, beam: &Beam) {
         let expected = "one of them, as section and material of the beam give it";
         self.without_rigid_keys(pointer, body, ("beam", expected));
-        for (name, point) in &body.points {
+        let places = body.points.iter();
+        for (name, point) in places.filter_map(|(name, own)| Some((name, own.coordinates()?))) {
             self.on_beam(&join(&join(pointer, "points"), name), beam, point);
         }
         let pointer = &join(pointer, "beam");
@@ -78,6 +79,7 @@ impl Checker<'_> {
             ("mass", body.mass.is_some()),
             ("centre_of_mass", body.centre_of_mass.is_some()),
             ("inertia", body.inertia.is_some()),
+            ("mass_properties", body.mass_properties.is_some()),
         ];
         for (key, _) in extra.into_iter().filter(|(_, given)| *given) {
             let found = format!("\"{key}\" beside \"{own}\"");

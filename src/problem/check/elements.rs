@@ -37,6 +37,7 @@ impl Checker<'_> {
             ("mass", body.mass.is_some()),
             ("centre_of_mass", body.centre_of_mass.is_some()),
             ("inertia", body.inertia.is_some()),
+            ("mass_properties", body.mass_properties.is_some()),
             ("points", !body.points.is_empty()),
         ];
         for (key, _) in extra.into_iter().filter(|(_, given)| *given) {

@@ -72,6 +72,25 @@ impl Checker<'_> {
             let expected = "\"turn\" or \"slide\"";
             self.fault(Finding::new(pointer, "a start without motion", expected).of_key());
         }
+        if let Some(turn) = &start.turn {
+            let turned = join(pointer, "turn");
+            let twice = [
+                (
+                    "degrees",
+                    "angle",
+                    turn.degrees.is_some() && turn.angle.is_some(),
+                ),
+                (
+                    "degrees_per_second",
+                    "rate",
+                    turn.degrees_per_second.is_some() && turn.rate.is_some(),
+                ),
+            ];
+            for (key, other, _) in twice.into_iter().filter(|(.., both)| *both) {
+                let found = format!("\"{key}\" beside \"{other}\"");
+                self.fault(Finding::new(join(&turned, key), found, "one of them").of_key());
+            }
+        }
         let motions = [
             (DegreeOfFreedom::Rotation, "turn", "\"angle\" or \"rate\""),
             (

@@ -38,6 +38,7 @@ impl Checker<'_> {
                 (None, None, Some(modal)) => self.modal(&pointer, body, modal),
                 (None, None, None) => self.mass(&pointer, body),
             }
+            self.points(&join(&pointer, "points"), body);
             self.place(&join(&pointer, "place"), name, &body.place);
         }
         self.start_of_deformations();
@@ -81,6 +82,21 @@ impl Checker<'_> {
 
     /// Checks that the mass properties of a body are given once, and are those of a solid.
     fn mass(&mut self, pointer: &str, body: &Body) {
+        if body.mass_properties.is_some() {
+            let extra = [
+                ("shape", body.shape.is_some()),
+                ("density", body.density.is_some()),
+                ("mass", body.mass.is_some()),
+                ("centre_of_mass", body.centre_of_mass.is_some()),
+                ("inertia", body.inertia.is_some()),
+            ];
+            for (key, _) in extra.into_iter().filter(|(_, given)| *given) {
+                let found = format!("\"{key}\" beside \"mass_properties\"");
+                let expected = "one of them, as the surface gives it";
+                self.fault(Finding::new(join(pointer, key), found, expected).of_key());
+            }
+            return;
+        }
         let mut wrong = |key: &str, found: &str, expected: &str| {
             let finding = Finding::new(join(pointer, key), found, expected);
             self.findings.push(finding.of_key());
@@ -114,7 +130,7 @@ impl Checker<'_> {
                 let finding = Finding::new(
                     pointer,
                     "a body without its mass properties",
-                    "\"shape\" and \"mass\" or \"density\", or else \"mass\" and \"inertia\", or else \"beam\", \"elements\" or \"modal\"",
+                    "\"shape\" and \"mass\" or \"density\", or else \"mass\" and \"inertia\", or else \"mass_properties\", \"beam\", \"elements\" or \"modal\"",
                 );
                 self.fault(finding.of_key());
                 return;
@@ -156,10 +172,10 @@ impl Checker<'_> {
         }
         let turn = join(pointer, "turn");
         match &place.turn {
-            Some(Turns::One(one)) => self.direction(&join(&turn, "axis"), &one.axis),
+            Some(Turns::One(one)) => self.turn(&turn, one),
             Some(Turns::Several(several)) => {
                 for (k, one) in several.iter().enumerate() {
-                    self.direction(&join(&join(&turn, k), "axis"), &one.axis);
+                    self.turn(&join(&turn, k), one);
                 }
             }
             None => {}

@@ -13,6 +13,7 @@ mod sets;
 mod structures;
 mod study;
 mod windows;
+mod turns;
 
 use super::finding::Finding;
 use super::placement::{GROUND, split_location};

@@ -1,0 +1,144 @@
+//! The bodies, joints, loads and drives of a use: their names and places in the machine.
+
+use super::used::Used;
+use super::writer::Writer;
+use crate::derived::parameter_of;
+use crate::finding::Finding;
+use crate::placement::GROUND;
+use crate::pointer::join;
+use serde_json::{Map, Value};
+
+impl Writer<'_> {
+    /// Moves a vector of the part: a point, or a direction.
+    fn moved(&mut self, used: &Used, value: Option<&mut Value>, pointer: &str, is_point: bool) {
+        let Some(value) = value.filter(|value| value.is_array()) else {
+            return;
+        };
+        if used.frame.is_ground() || (!is_point && used.frame.rotation.is_none()) {
+            return;
+        }
+        let from = self.origins.resolve(pointer);
+        if let Some(own) = self.triple(value, &from, Some(used.name)) {
+            let moved = match is_point {
+                true => used.frame.point(own),
+                false => used.frame.direction(own),
+            };
+            *value = self.put(pointer, moved);
+        }
+    }
+
+    /// Writes one entry of a part.
+    pub fn entry(&mut self, used: &mut Used, section: &str, key: &str, entry: &Value) {
+        let full = parameter_of(used.name, key);
+        let pointer = join(&format!("/{section}"), &full);
+        if self.section(section).contains_key(&full) {
+            let found = format!("\"{full}\" of {section} a second time");
+            let expected = "a use whose names the machine does not have";
+            self.findings
+                .push(Finding::new(&used.at, found, expected).of_key());
+            return;
+        }
+        let from = join(&join(&used.from, section), key);
+        self.origin(pointer.clone(), from, used.name, Some(used.name));
+        let mut entry = entry.clone();
+        match section {
+            "bodies" => self.body(used, &mut entry, &pointer),
+            "drives" => used.rename_joint(entry.get_mut("joint")),
+            _ => {
+                for (kind, inner) in entry.as_object_mut().into_iter().flatten() {
+                    let pointer = join(&pointer, kind);
+                    self.joint_or_load(used, inner, &pointer);
+                }
+            }
+        }
+        self.section(section).insert(full, entry);
+    }
+
+    /// Places a body.
+    fn body(&mut self, used: &mut Used, body: &mut Value, pointer: &str) {
+        let velocity = join(pointer, "velocity");
+        for key in ["linear", "angular"] {
+            let own = body.get_mut("velocity").and_then(|own| own.get_mut(key));
+            self.moved(used, own, &join(&velocity, key), false);
+        }
+        let at = join(pointer, "place");
+        let Value::Object(body) = body else { return };
+        let place = body
+            .entry("place")
+            .or_insert_with(|| Value::Object(Map::new()));
+        let Value::Object(place) = place else { return };
+        match place.get_mut("at") {
+            None => {
+                if let Some(origin) = used.frame.place.clone() {
+                    let pointer = join(&at, "at");
+                    self.origin(pointer.clone(), join(&used.at, "at"), used.name, None);
+                    let value = self.put(&pointer, origin);
+                    place.insert("at".to_owned(), value);
+                }
+            }
+            Some(Value::String(_)) => used.rename_location(place.get_mut("at")),
+            own => self.moved(used, own, &join(&at, "at"), true),
+        }
+        used.rename_body(place.get_mut("relative_to").filter(|own| *own != GROUND));
+        let from_ground = place.get("relative_to").is_none_or(|own| own == GROUND);
+        if !from_ground || used.frame.turns.is_empty() {
+            return;
+        }
+        let turn = join(&at, "turn");
+        let mut turns = match place.shift_remove("turn") {
+            Some(Value::Array(list)) => list,
+            Some(one) => {
+                let from = self.origins.resolve(&turn);
+                self.origin(join(&turn, 0), from, used.name, Some(used.name));
+                vec![one]
+            }
+            None => Vec::new(),
+        };
+        for (own, from) in used.frame.turns.clone() {
+            self.origin(join(&turn, turns.len()), from, used.name, None);
+            turns.push(own);
+        }
+        place.insert("turn".to_owned(), Value::Array(turns));
+    }
+
+    /// Renames and moves what a joint or a load names.
+    fn joint_or_load(&mut self, used: &mut Used, entry: &mut Value, pointer: &str) {
+        let mut on_ground = [false; 2];
+        let between = entry.get_mut("between").and_then(Value::as_array_mut);
+        for (k, name) in between.into_iter().flatten().enumerate() {
+            used.rename_body(Some(&mut *name));
+            if let Some(side) = on_ground.get_mut(k) {
+                *side = name == GROUND;
+            }
+        }
+        used.rename_body(entry.get_mut("body"));
+        used.rename_joint(entry.get_mut("joint"));
+        let at = join(pointer, "at");
+        match entry.get_mut("at") {
+            own @ Some(Value::String(_)) => used.rename_location(own),
+            Some(Value::Object(pair)) => {
+                for (k, side) in ["a", "b"].into_iter().enumerate() {
+                    if on_ground[k] {
+                        self.moved(used, pair.get_mut(side), &join(&at, side), true);
+                    }
+                }
+            }
+            Some(Value::Array(items)) if items.iter().all(Value::is_array) => {
+                for (k, item) in items.iter_mut().enumerate() {
+                    self.moved(used, Some(item), &join(&at, k), true);
+                }
+            }
+            own => self.moved(used, own, &at, true),
+        }
+        for key in ["axis", "cross"] {
+            match entry.get_mut(key) {
+                Some(Value::Object(of_body)) => used.rename_body(of_body.get_mut("body")),
+                own => self.moved(used, own, &join(pointer, key), false),
+            }
+        }
+        if entry.get("axes").is_none_or(|axes| axes == GROUND) {
+            let direction = join(pointer, "direction");
+            self.moved(used, entry.get_mut("direction"), &direction, false);
+        }
+    }
+}
