@@ -30,6 +30,7 @@ CLASSES = {
     "Held2": "HeldPlace",
     "Start": "StartOfMotion",
     "Start2": "FirstSteps",
+    "Part": "PartOfMachine",
     "Mass": "NodeMass",
     "Energy": "EnergyKind",
     "Functions": "BendingFunctions",

@@ -88,15 +88,6 @@ pub struct Document {
     #[serde(default)]
     #[schemars(extend("unit" = OF_PARAMETERS))]
     pub parameters: IndexMap<String, Quantity>,
-    /// Parts by name: groups of bodies, joints, loads and drives that are defined once.
-    #[serde(default, rename = "parts")]
-    pub _parts: IndexMap<String, Part>,
-    /// Uses of parts by name. The body "thigh" of a part is "NAME/thigh" in the machine.
-    #[serde(default, rename = "use")]
-    pub _use: IndexMap<String, Use>,
-    /// Keys that bodies and joints have unless they give their own.
-    #[serde(default, rename = "defaults")]
-    pub _defaults: Defaults,
     /// Bodies by name.
     #[serde(default)]
     pub bodies: IndexMap<String, Body>,
@@ -147,6 +138,15 @@ pub struct Document {
     /// Settings of the plot of the motion.
     #[serde(default)]
     pub plot: Plot,
+    /// Parts by name: groups of bodies, joints, loads and drives that are defined once.
+    #[serde(default, rename = "parts")]
+    pub _parts: IndexMap<String, Part>,
+    /// Uses of parts by name. The body "thigh" of a part is "NAME/thigh" in the machine.
+    #[serde(default, rename = "use")]
+    pub _use: IndexMap<String, Use>,
+    /// Keys that bodies and joints have unless they give their own.
+    #[serde(default, rename = "defaults")]
+    pub _defaults: Defaults,
 }
 
 /// Default tolerance of the input.

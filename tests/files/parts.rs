@@ -36,7 +36,7 @@ fn machine(uses: &str, rest: &str) -> String {
   "simulation": {{"duration": 0.4, "tolerance": 1e-10}},
   "functions": {{
     "x": {{"final": {{"position": {{"body": "left/lower", "direction": [1, 0.5, 0.2]}}}}}},
-    "y": {{"final": {{"position": {{"body": "right/lower", "direction": [0, 1, 0.3]}}}}}},
+    "y": {{"final": {{"position": {{"body": "right/lower", "direction": [0.2, 1, 0.3]}}}}}},
     "energy": {{"integral": {{"energy": "kinetic"}}}},
     "mass": "mass"
   }}{rest}
