@@ -51,8 +51,8 @@ pub mod structure;
 mod surfaces;
 mod syntax;
 mod text;
-mod units;
 mod turns;
+mod units;
 mod variables;
 mod windows;
 

@@ -12,8 +12,8 @@ mod sections;
 mod sets;
 mod structures;
 mod study;
-mod windows;
 mod turns;
+mod windows;
 
 use super::finding::Finding;
 use super::placement::{GROUND, split_location};
