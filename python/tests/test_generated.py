@@ -94,7 +94,7 @@ def build(document: dict[str, Any]) -> Machine:
             if key in collections:
                 ((kind, arguments),) = entry.items()
                 getattr(machine, f"add_{single}")(name, getattr(collections[key], kind)(**arguments))
-            elif key in ("functions", "load_cases"):
+            elif key in ("functions", "load_cases", "parameters"):
                 getattr(machine, f"add_{single}")(name, entry)
             else:
                 getattr(machine, f"add_{single}")(name, **entry)
