@@ -247,6 +247,10 @@ pub(crate) struct Measurement {
     /// CPU time of the runs of one method with equal steps, or with adaptive ones [s].
     #[arg(long, default_value_t = 8.0, value_parser = positive)]
     pub seconds: f64,
+    /// Largest number of halvings of a method's equal step. With many --seconds, the measured steps
+    /// do not depend on the speed of the machine.
+    #[arg(long, value_name = "N", default_value_t = crate::driver::work_precision::HALVINGS, value_parser = clap::value_parser!(u32).range(1..=22))]
+    pub halvings: u32,
     /// Number of runs of which the fastest counts. One more run comes first and does not count.
     #[arg(long, value_name = "N", default_value_t = 5, value_parser = clap::value_parser!(u32).range(1..=1000))]
     pub runs: u32,

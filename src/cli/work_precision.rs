@@ -106,6 +106,7 @@ fn plan(asked: &Measurement, problem: &Problem) -> Result<Campaign, Failure> {
     };
     Ok(Campaign {
         seconds: asked.seconds,
+        halvings: asked.halvings,
         runs: asked.runs as usize,
         function,
         reference,

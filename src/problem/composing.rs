@@ -3,11 +3,11 @@
 use super::composed::{Composed, Composition, Term};
 use super::derived::{Derived, place};
 use super::expression::{Expression, MARK, Placed};
+use super::expression_units::{Known, unit};
 use super::finding::{Finding, Part};
 use super::pointer::{advice, join};
 use super::prune::Damage;
 use super::source::Source;
-use super::unit::{Known, unit};
 use crate::math::unit::Unit;
 use crate::schema::functions::{Function, WhichFunction};
 use crate::schema::{Document, Objective};

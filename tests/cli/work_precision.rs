@@ -87,7 +87,16 @@ fn all_methods_are_measured_with_their_orders() {
     let done = measure(
         directory.path(),
         PENDULUM,
-        &["--function", "height", "--seconds", "0.25", "--runs", "1"],
+        &[
+            "--function",
+            "height",
+            "--seconds",
+            "100",
+            "--halvings",
+            "8",
+            "--runs",
+            "1",
+        ],
     );
     assert_eq!(done.status.code(), Some(0), "{}", text(&done.stderr));
     assert!(text(&done.stdout).contains("orders of convergence"));

@@ -142,8 +142,8 @@ pub(super) fn functions(body: usize, gate_body: usize) -> Vec<Function<f64>> {
     ]
 }
 
-/// The derivative of every function in every parameter agrees to 1e-12 of itself, of the largest of its terms, of
-/// the function's value or of its largest derivative, whose round-off affects the small ones. Adjoint and complex step
+/// The derivative of every function in every parameter agrees to 1e-12 of itself or of the
+/// function's largest derivative, whose round-off affects the small ones. Adjoint and complex step
 /// differentiate the same motion.
 fn check(model: &Model<f64>, duration: f64, settings: &Settings) {
     let scene = scene(model, duration);
@@ -189,32 +189,30 @@ fn scene(model: &Model<f64>, duration: f64) -> Scene<f64> {
 }
 
 pub(super) fn compare(scene: &Scene<f64>, settings: &Settings, directions: &[Vec<f64>]) {
-    compare_to(scene, settings, directions, |_| 1e-12);
+    compare_to(scene, settings, directions, |_, _| (1.0, 1e-12));
 }
 
-/// The same, to a tolerance of each function.
+/// The same, to a size and a tolerance of each function and its value: derivatives below the size are judged by it.
 pub(super) fn compare_to(
     scene: &Scene<f64>,
     settings: &Settings,
     directions: &[Vec<f64>],
-    tolerance: impl Fn(&Function<f64>) -> f64,
+    size_and_tolerance: impl Fn(&Function<f64>, f64) -> (f64, f64),
 ) {
     let (exact, run) = complex_steps(scene, settings, directions);
     let which: Vec<usize> = (0..scene.functions.len()).collect();
     let adjoint = gradients(scene, &run, &which).expect("differentiates");
     for (f, gradient) in adjoint.gradients.iter().enumerate() {
+        let function = &scene.functions[f];
+        let value = function.evaluate(&scene.model, &run).value;
+        let (size, tolerance) = size_and_tolerance(function, value);
         let given = gradient.parameters();
-        let value = scene.functions[f].evaluate(&scene.model, &run).value;
-        let scale = exact
-            .iter()
-            .fold(value.abs().max(1.0), |m, row| m.max(row[f].abs()));
+        let scale = exact.iter().fold(size, |m, row| m.max(row[f].abs()));
         for (row, direction) in exact.iter().zip(directions) {
-            let terms = || given.iter().zip(direction).map(|(g, d)| g * d);
-            let sum: f64 = terms().sum();
-            let largest = terms().fold(scale, |m, term| m.max(term.abs()));
-            let relative = (sum - row[f]).abs() / row[f].abs().max(largest);
+            let sum: f64 = given.iter().zip(direction).map(|(g, d)| g * d).sum();
+            let relative = (sum - row[f]).abs() / row[f].abs().max(scale);
             assert!(
-                relative <= tolerance(&scene.functions[f]),
+                relative <= tolerance,
                 "{}: function {f}: {sum} against {}, off by {relative:e}",
                 settings.method.name(),
                 row[f]

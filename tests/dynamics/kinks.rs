@@ -9,7 +9,7 @@ use flexbody_problem::Problem;
 use serde_json::Value;
 
 /// A mass on a slide, pushed by the force of a table.
-fn pushed(table: Value, simulation: Value) -> Value {
+pub(super) fn pushed(table: Value, simulation: Value) -> Value {
     let x = json!({"position": {"body": "m", "direction": [1, 0, 0]}});
     let v = json!({"velocity": {"body": "m", "direction": [1, 0, 0]}});
     json!({
@@ -36,12 +36,12 @@ fn pushed(table: Value, simulation: Value) -> Value {
 }
 
 /// A ramp up to 1 s and down to 2 s.
-fn triangle() -> Value {
+pub(super) fn triangle() -> Value {
     json!({"times": [0, 1, 2], "values": [0, 1, 0], "interpolation": "linear"})
 }
 
 /// Speed and position of the pushed mass of 1 kg, which starts at rest.
-fn exact(t: f64) -> [f64; 2] {
+pub(super) fn exact(t: f64) -> [f64; 2] {
     if t <= 1.0 {
         return [t * t / 2.0, t.powi(3) / 6.0];
     }

@@ -2,6 +2,7 @@
 //! closed forms.
 
 use crate::gradients_match_complex_step::{compare_to, explicit, implicit};
+use crate::kinks::{exact, pushed, triangle};
 use crate::reference;
 use crate::reference::documents::{problem, values};
 use crate::reference::gradients::gradients_are_exact;
@@ -236,13 +237,14 @@ fn has_rate(of: &Quantity<f64>) -> bool {
     }
 }
 
-/// A rate divides round-off by the distance of samples, here 1e-3 … 1e-2 s.
-fn tolerance(function: &Function<f64>) -> f64 {
-    match function.quantity().is_some_and(has_rate) {
+/// Size and tolerance of derivatives. A rate divides round-off by the distance of samples, here 1e-3 … 1e-2 s. Powers and
+/// reactions that cancel to zero have the round-off of their terms, of the order of ten.
+fn size_and_tolerance(function: &Function<f64>, value: f64) -> (f64, f64) {
+    let tolerance = match function.quantity().is_some_and(has_rate) {
         true => 1e-10,
-        // Powers and reactions that cancel to zero have the round-off of their terms, of the order of ten.
         false => 1e-11,
-    }
+    };
+    (value.abs().max(1.0), tolerance)
 }
 
 /// Three directions that change all parameters, in proportion to their size.
@@ -264,7 +266,7 @@ fn derivatives_are_exact_by_every_method() {
     let implicit = implicit(&model, 0.4, 40);
     for (i, settings) in explicit.iter().chain(&implicit).enumerate() {
         let scene = scene(&model, 0.4, 5 * i);
-        compare_to(&scene, settings, &directions(&scene), tolerance);
+        compare_to(&scene, settings, &directions(&scene), size_and_tolerance);
     }
 }
 
@@ -274,38 +276,24 @@ fn derivatives_are_exact_for_every_quantity_and_window() {
     let settings = &explicit(&model, 0.4, 10)[1];
     for first in 0..quantities(&model).len() {
         let scene = scene(&model, 0.4, first);
-        compare_to(&scene, settings, &directions(&scene)[..1], tolerance);
+        compare_to(
+            &scene,
+            settings,
+            &directions(&scene)[..1],
+            size_and_tolerance,
+        );
     }
 }
 
 /// A mass on a slide, pushed by a force that rises to 1 N at 1 s and falls to zero at 2 s.
-fn pushed(functions: Value, simulation: Value) -> Value {
-    json!({
-        "version": 1, "name": "pushed", "gravity": [0, 0, 0],
-        "bodies": {"m": {"shape": {"sphere": {"radius": 0.1}}, "mass": 1,
-                         "velocity": {"linear": [0, 0, 0]}}},
-        "joints": {"g": {"prismatic": {"between": ["m", "ground"], "at": [0, 0, 0],
-                                       "axis": [1, 0, 0]}}},
-        "loads": {"F": {"force": {"body": "m", "direction": [1, 0, 0], "magnitude": {"table": {
-            "times": [0, 1, 2], "values": [0, 1, 0], "interpolation": "linear"}}}}},
-        "simulation": simulation,
-        "functions": functions,
-        "variables": {
-            "mass": {"path": "/bodies/m/mass", "lower": 0.1, "upper": 10},
-            "T": {"path": "/simulation/duration", "lower": 2.5, "upper": 5}
-        }
-    })
-}
-
-/// Its speed and place at t.
-fn exact(t: f64) -> [f64; 2] {
-    if t <= 1.0 {
-        return [t * t / 2.0, t.powi(3) / 6.0];
-    }
-    let s = (t - 1.0).min(1.0);
-    let v = 0.5 + s - s * s / 2.0;
-    let x = 1.0 / 6.0 + s / 2.0 + s * s / 2.0 - s.powi(3) / 6.0;
-    [v, x + (t - 1.0 - s)]
+fn with_functions(functions: Value, simulation: Value) -> Value {
+    let mut document = pushed(triangle(), simulation);
+    document["functions"] = functions;
+    document["variables"] = json!({
+        "mass": {"path": "/bodies/m/mass", "lower": 0.1, "upper": 10},
+        "T": {"path": "/simulation/duration", "lower": 2.5, "upper": 5}
+    });
+    document
 }
 
 /// Windows that end on samples, between them and at kinks, by methods of high order on their own and on equal
@@ -343,7 +331,7 @@ fn windows_of_a_pushed_mass_have_closed_forms() {
             [1.7, 3.0],
             [0.0, 3.0],
         ] {
-            let document = pushed(
+            let document = with_functions(
                 json!({
                     "way": {"integral": within(&v, [from, to])},
                     "speed": {"mean": within(&v, [from, to])},

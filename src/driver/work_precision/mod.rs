@@ -26,6 +26,8 @@ use exact::Reference;
 pub struct Campaign {
     /// CPU time of the runs of one method with equal or with adaptive steps \[s\].
     pub seconds: f64,
+    /// Largest number of halvings of the equal step of one method.
+    pub halvings: u32,
     /// Number of runs of which the fastest counts.
     pub runs: usize,
     /// Index of the function whose gradient is measured.
@@ -36,8 +38,8 @@ pub struct Campaign {
 
 /// Decades of the tolerances.
 const TOLERANCES: std::ops::RangeInclusive<i32> = 3..=12;
-/// Largest number of halvings of the step.
-const HALVINGS: u32 = 22;
+/// Number of halvings of the equal step where the time alone is to bound it.
+pub const HALVINGS: u32 = 22;
 /// Smallest number of steps.
 const FEWEST: usize = 10;
 /// Equal steps start at half the number of steps with this tolerance.
@@ -95,7 +97,7 @@ pub fn work_precision(
             let tolerances = TOLERANCES.map(|decade| Spacing::Tolerance(10_f64.powi(-decade)));
             measurement.series(method, tolerances);
         }
-        let steps = (0..=HALVINGS).map(|halving| Spacing::Steps(fewest << halving));
+        let steps = (0..=plan.halvings).map(|halving| Spacing::Steps(fewest << halving));
         measurement.series(method, steps);
     }
     let (rows, notes) = (measurement.rows, measurement.notes);

@@ -1,5 +1,6 @@
 //! Scalars, vectors, rotations and smooth maxima: mathematics without mechanics.
 
+pub mod lagrange;
 pub mod legendre;
 pub mod parameters;
 pub mod rotation;

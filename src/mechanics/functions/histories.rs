@@ -1,7 +1,6 @@
 //! Histories: the quantity behind a function at the samples of a run, and at instants between them.
 
-use super::Function;
-use super::rate::slopes;
+use super::{Function, interpolation};
 use crate::integrate::Trajectory;
 use crate::model::Model;
 
@@ -122,9 +121,8 @@ fn reading(run: &Trajectory<f64>, shown: &[usize], at: f64) -> Reading {
     while last + 1 < shown.len() && last + 1 < next + BESIDE && run.grid.part(place(last)) == part {
         last += 1;
     }
-    let nodes: Vec<usize> = (first..=last).collect();
-    let slope = slopes(&nodes, at, place).map(|(i, weight)| (shown[i], weight));
-    let slope: Weights = slope.collect();
+    let nodes = &shown[first..=last];
+    let slope = interpolation::slope(run, nodes, at);
     if exact {
         let only = vec![(shown[next], 1.0)];
         return Reading {
@@ -138,18 +136,13 @@ fn reading(run: &Trajectory<f64>, shown: &[usize], at: f64) -> Reading {
         true => first,
         false => last,
     };
-    let fewer: Vec<usize> = nodes.iter().copied().filter(|&i| i != farthest).collect();
-    let lagrange = |nodes: &[usize]| -> Weights {
-        let weight = |&j: &usize| {
-            let others = nodes.iter().filter(|&&i| i != j);
-            let weight = others.fold(1.0, |w, &i| w * (at - place(i)) / (place(j) - place(i)));
-            (shown[j], weight)
-        };
-        nodes.iter().map(weight).collect()
+    let without = |node: usize| -> Vec<usize> {
+        let others = nodes.iter().copied();
+        others.filter(|&k| k != shown[node]).collect()
     };
     Reading {
-        value: lagrange(&nodes),
-        coarser: lagrange(&fewer),
+        value: interpolation::value(run, nodes, at),
+        coarser: interpolation::value(run, &without(farthest), at),
         slope,
     }
 }

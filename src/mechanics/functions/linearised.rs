@@ -4,7 +4,7 @@ use super::evaluate::{mean_flight, release_weights, turning, without_negligible}
 use super::function::{Function, Reduction, Release};
 use super::instant::{Instant, Projectile};
 use super::measure::pull_flight;
-use super::quantity::Quantity;
+use super::quantity::{Quantity, Sampled};
 use super::samples::turn;
 use super::snapshot::{Snapshot, SnapshotCotangent};
 use super::turning::turns;
@@ -79,10 +79,15 @@ impl<'a> Linearised<'a> {
             } => this.during(of, window, *reduction, (model, run)),
             Function::Reduced { of, reduction, .. } => {
                 let instants = 0..=run.last();
+                // The value at the end is that of its own instant.
+                let sampled = match reduction {
+                    Reduction::Final => None,
+                    _ => Some(of.sampled((model, run), instants.clone())),
+                };
+                let values = sampled.as_ref().map_or(&[][..], |own| &own.values);
                 let weights = match *reduction {
                     Reduction::Final => instants.map(last).collect(),
                     Reduction::Integral => {
-                        let values = of.sample(model, run);
                         this.by_duration =
                             instants.clone().map(|k| values[k] * run.moving[k]).sum();
                         let duration = run.time(run.last());
@@ -91,42 +96,37 @@ impl<'a> Linearised<'a> {
                             .collect()
                     }
                     Reduction::Mean => {
-                        let values = of.sample(model, run);
                         this.by_duration =
                             by_weights(run, |k| run.quadrature_weight(k) * values[k]);
                         instants.map(|k| run.quadrature_weight(k)).collect()
                     }
-                    Reduction::Ks { rho, bound } => {
-                        let values = of.sample(model, run);
-                        match bound {
-                            Bound::Below => {
-                                let soft = SoftMax::new(&values, |k| run.quadrature_weight(k), rho);
-                                this.by_duration = by_weights(run, |k| soft.weights[k] / rho);
-                                soft.weights
-                            }
-                            Bound::Above => {
-                                let (soft, points) = turning(&values, run, rho);
-                                let mut weights = vec![0.0; values.len()];
-                                for (weight, point) in soft.weights.iter().zip(&points) {
-                                    for &(k, part) in &point.of {
-                                        weights[k] += weight * part;
-                                    }
-                                }
-                                weights
-                            }
+                    Reduction::Ks { rho, bound } => match bound {
+                        Bound::Below => {
+                            let soft = SoftMax::new(values, |k| run.quadrature_weight(k), rho);
+                            this.by_duration = by_weights(run, |k| soft.weights[k] / rho);
+                            soft.weights
                         }
-                    }
+                        Bound::Above => {
+                            let (soft, points) = turning(values, run, rho);
+                            let mut weights = vec![0.0; values.len()];
+                            for (weight, point) in soft.weights.iter().zip(&points) {
+                                for &(k, part) in &point.of {
+                                    weights[k] += weight * part;
+                                }
+                            }
+                            weights
+                        }
+                    },
                     Reduction::InducedExponential { rho } => {
-                        let values = of.sample(model, run);
-                        let soft = SoftMax::new(&values, |k| run.quadrature_weight(k), rho);
-                        let mean = soft.induced_exponential(&values);
+                        let soft = SoftMax::new(values, |k| run.quadrature_weight(k), rho);
+                        let mean = soft.induced_exponential(values);
                         this.by_duration =
                             by_weights(run, |k| soft.weights[k] * (values[k] - mean));
                         let by = |k: usize| soft.weights[k] * (1.0 + rho * (values[k] - mean));
                         instants.map(by).collect()
                     }
                 };
-                this.weigh(of, weights, (model, run));
+                this.weigh(of, (weights, sampled), (model, run));
             }
             Function::Clearance {
                 projectile,
@@ -165,20 +165,24 @@ impl<'a> Linearised<'a> {
             by_ends: [0.0; 2],
         };
         if let Some(of) = function.quantity() {
-            this.weigh(of, weights.to_vec(), (model, run));
+            this.weigh(of, (weights.to_vec(), None), (model, run));
         }
         this
     }
 
-    /// Adds weights of the values of a quantity.
+    /// Adds weights of the values of a quantity; `sampled` has them, if they are known.
     fn weigh(
         &mut self,
         of: &Quantity<f64>,
-        weights: Vec<f64>,
+        (weights, sampled): (Vec<f64>, Option<Sampled<f64>>),
         (model, run): (&Model<f64>, &Trajectory<f64>),
     ) {
+        let sampled = sampled.unwrap_or_else(|| match of {
+            Quantity::Of(_) => Sampled::default(),
+            Quantity::Combined { .. } => of.sampled((model, run), 0..=run.last()),
+        });
         let mut all = Vec::new();
-        of.spread((model, run), weights, &mut self.by_duration, &mut all);
+        of.spread((run, &sampled), weights, &mut self.by_duration, &mut all);
         let all = all.into_iter();
         let all = all.map(|(instant, weights)| Weighted::new(instant, weights, run));
         self.quantities.extend(all);
@@ -195,10 +199,10 @@ impl<'a> Linearised<'a> {
         let Some(ends) = window.place(model, run) else {
             return;
         };
-        let values = of.sample(model, run);
-        let by = windowed::derivatives(reduction, run, &ends, &values);
+        let sampled = of.sampled((model, run), 0..=run.last());
+        let by = windowed::derivatives(reduction, run, &ends, &sampled.values);
         self.by_duration += by.by_duration;
-        self.weigh(of, by.by_values, (model, run));
+        self.weigh(of, (by.by_values, Some(sampled)), (model, run));
         for (i, (edge, end)) in [&window.from, &window.to]
             .into_iter()
             .zip(&ends)
@@ -208,11 +212,11 @@ impl<'a> Linearised<'a> {
             self.by_ends[i] = by_end * end.by_own;
             self.by_duration += by_end * end.by_duration;
             if let Edge::When(reach) = edge {
-                let mut weights = vec![0.0; values.len()];
+                let mut weights = vec![0.0; run.last() + 1];
                 for &(k, weight) in &end.by_values {
                     weights[k] += by_end * weight;
                 }
-                self.weigh(&reach.of, weights, (model, run));
+                self.weigh(&reach.of, (weights, None), (model, run));
             }
         }
     }

@@ -356,41 +356,27 @@ impl Instant<f64> {
                 add6(&mut out.y[at.numbering.velocity(*body)..], &ZERO, &turn);
             }
             (Instant::Seen(seen), Instant::Seen(own)) => seen.pull_back(at, weight, out, own),
-            (Instant::Power(_) | Instant::JointRate { .. }, _) => {
+            (Instant::Power(load), _) => {
                 let motions = at.motions();
-                let mut to = JointCotangent {
-                    y: Some(&mut *out.y),
-                    v: Some(&mut *out.v),
-                    model: &mut *out.model,
-                };
+                let mut to = out.of_states();
                 let here = at.in_motion(&motions);
-                match self {
-                    Instant::Power(load) => {
-                        *out.time += work::pull_power(&here, *load, weight, &mut to);
-                    }
-                    Instant::JointRate { joint, dof } => {
-                        work::pull_joint_rate(&here, (*joint, *dof), weight, &mut to);
-                    }
-                    _ => unreachable!("only these reach here"),
-                }
+                let by_time = work::pull_power(&here, *load, weight, &mut to);
+                *out.time += by_time;
+            }
+            (Instant::JointRate { joint, dof }, _) => {
+                let motions = at.motions();
+                let here = at.in_motion(&motions);
+                work::pull_joint_rate(&here, (*joint, *dof), weight, &mut out.of_states());
             }
             (Instant::Slide(joint), _) => {
                 let motions = at.motions();
-                let mut to = JointCotangent {
-                    y: Some(&mut *out.y),
-                    v: None,
-                    model: &mut *out.model,
-                };
-                measures::pull_slide(&at.in_motion(&motions), *joint, weight, &mut to);
+                let here = at.in_motion(&motions);
+                measures::pull_slide(&here, *joint, weight, &mut out.of_states());
             }
             (Instant::Spring(spring), _) => {
                 let motions = at.motions();
-                let mut to = JointCotangent {
-                    y: Some(&mut *out.y),
-                    v: Some(&mut *out.v),
-                    model: &mut *out.model,
-                };
-                springs::pull_back(&at.in_motion(&motions), *spring, weight, &mut to);
+                let here = at.in_motion(&motions);
+                springs::pull_back(&here, *spring, weight, &mut out.of_states());
             }
             (Instant::Rotation(rotation), Instant::Rotation(own)) => {
                 rotation.pull_back((at.numbering, at.q), weight, out.y, own);
@@ -424,7 +410,7 @@ const ZERO: Vec3<f64> = Vec3::new(0.0, 0.0, 0.0);
 
 /// Pulls cotangents of a point's position, velocity and acceleration back. Returns the cotangent of
 /// the point.
-fn pull_point(
+pub(super) fn pull_point(
     at: &Snapshot<f64>,
     body: usize,
     point: &Vec3<f64>,

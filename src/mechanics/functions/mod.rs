@@ -6,6 +6,7 @@ pub mod flight;
 pub mod function;
 pub mod histories;
 pub mod instant;
+mod interpolation;
 pub mod linearised;
 mod measure;
 mod multipliers;

@@ -2,7 +2,7 @@
 
 use crate::integrate::Trajectory;
 use crate::integrate::quadrature::{ADDED, NODES, WEIGHTS};
-use crate::math::Scalar;
+use crate::math::{Scalar, lagrange};
 use std::ops::Range;
 
 /// Number of samples on either side of an interval that its polynomial uses, without cells.
@@ -69,14 +69,9 @@ struct Polynomial {
 impl Polynomial {
     /// Weights of the values in the polynomial at `x`; one per node.
     fn weights(&self, x: f64) -> Vec<f64> {
-        let weight = |j: usize| {
-            let others = (0..self.nodes.len()).filter(|&i| i != j);
-            let xj = self.nodes[j].0;
-            others.fold(1.0, |w, i| {
-                w * (x - self.nodes[i].0) / (xj - self.nodes[i].0)
-            })
-        };
-        (0..self.nodes.len()).map(weight).collect()
+        let count = self.nodes.len();
+        let weight = |j| lagrange::weight(count, |i| self.nodes[i].0, x, j);
+        (0..count).map(weight).collect()
     }
 
     fn value(&self, x: f64) -> f64 {
@@ -86,22 +81,12 @@ impl Polynomial {
 
     /// Derivative at `x`, computed from differences to the first value.
     fn slope(&self, x: f64) -> f64 {
-        let n = self.nodes.len();
+        let count = self.nodes.len();
         let part = |j: usize| {
-            let xj = self.nodes[j].0;
-            let sum: f64 = (0..n)
-                .filter(|&m| m != j)
-                .map(|m| {
-                    let others = (0..n).filter(|&i| i != j && i != m);
-                    let factor = 1.0 / (xj - self.nodes[m].0);
-                    others.fold(factor, |w, i| {
-                        w * (x - self.nodes[i].0) / (xj - self.nodes[i].0)
-                    })
-                })
-                .sum();
-            sum * (self.nodes[j].1 - self.nodes[0].1)
+            let weight = lagrange::slope(count, |i| self.nodes[i].0, x, j);
+            weight * (self.nodes[j].1 - self.nodes[0].1)
         };
-        (1..n).map(part).sum()
+        (1..count).map(part).sum()
     }
 
     /// Zero between two fractions at which the polynomial has different signs, or the nearer end.

@@ -217,29 +217,54 @@ impl<S: Scalar> Quantity<S> {
     }
 }
 
+/// Values of a quantity, and of the quantities that it combines.
+#[derive(Clone, Debug, Default)]
+pub(super) struct Sampled<S> {
+    /// By instant.
+    pub values: Vec<S>,
+    of: Vec<Sampled<S>>,
+}
+
 impl<S: SolveScalar> Quantity<S> {
-    /// Values at some instants of a run.
-    pub(super) fn sample_in(
+    /// Values at some instants of a run, of all quantities in it.
+    pub(super) fn sampled(
         &self,
         (model, run): (&Model<S>, &Trajectory<S>),
         instants: RangeInclusive<usize>,
+    ) -> Sampled<S> {
+        let (operation, of) = match self {
+            Self::Of(instant) => {
+                return Sampled {
+                    values: sample_at(instant, (model, run), instants),
+                    of: Vec::new(),
+                };
+            }
+            Self::Combined { operation, of } => (*operation, of),
+        };
+        let inner = match operation {
+            Operation::Rate => 0..=run.last(),
+            _ => instants.clone(),
+        };
+        let of: Vec<Sampled<S>> = of
+            .iter()
+            .map(|own| own.sampled((model, run), inner.clone()))
+            .collect();
+        let values = match operation {
+            Operation::Rate => rate::rates(run, &of[0].values)[instants].to_vec(),
+            _ => (0..of[0].values.len())
+                .map(|k| operation.at(&values_at(&of, k)))
+                .collect(),
+        };
+        Sampled { values, of }
+    }
+
+    /// Values at some instants of a run.
+    pub(super) fn sample_in(
+        &self,
+        of: (&Model<S>, &Trajectory<S>),
+        instants: RangeInclusive<usize>,
     ) -> Vec<S> {
-        match self {
-            Self::Of(instant) => sample_at(instant, (model, run), instants),
-            Self::Combined {
-                operation: Operation::Rate,
-                of,
-            } => {
-                let all = of[0].sample_in((model, run), 0..=run.last());
-                rate::rates(run, &all)[instants].to_vec()
-            }
-            Self::Combined { operation, of } => {
-                let sample = |own: &Self| own.sample_in((model, run), instants.clone());
-                let all: Vec<Vec<S>> = of.iter().map(sample).collect();
-                let at = |k: usize| operation.at(&values_at(&all, k));
-                (0..all[0].len()).map(at).collect()
-            }
-        }
+        self.sampled(of, instants).values
     }
 
     /// Values at all instants of a run, and without aggregation over points: their largest values.
@@ -269,40 +294,36 @@ impl Quantity<f64> {
     }
 
     /// The weights of the quantities of an instant in it, in the order of [`Quantity::for_each`], that stand for
-    /// weights of its own values at all instants. Adds its derivative in the duration at fixed states.
+    /// weights of its own values at all instants. `sampled` has the values of what it combines. Adds its derivative in the
+    /// duration at fixed states.
     pub(super) fn spread(
         &self,
-        (model, run): (&Model<f64>, &Trajectory<f64>),
+        (run, sampled): (&Trajectory<f64>, &Sampled<f64>),
         weights: Vec<f64>,
         by_duration: &mut f64,
         out: &mut Vec<(Instant<f64>, Vec<f64>)>,
     ) {
-        match self {
-            Self::Of(instant) => out.push((instant.clone(), weights)),
-            Self::Combined {
-                operation: Operation::Rate,
-                of,
-            } => {
-                let values = of[0].sample(model, run);
-                *by_duration += rate::by_duration(run, &values, &weights);
-                let weights = rate::spread(run, &weights);
-                of[0].spread((model, run), weights, by_duration, out);
-            }
-            Self::Combined { operation, of } => {
-                let all: Vec<Vec<f64>> = of.iter().map(|own| own.sample(model, run)).collect();
-                for (which, own) in of.iter().enumerate() {
-                    let by = |(k, &weight): (usize, &f64)| match weight == 0.0 {
-                        true => 0.0,
-                        false => weight * operation.by(&values_at(&all, k), which),
-                    };
-                    let weights = weights.iter().enumerate().map(by).collect();
-                    own.spread((model, run), weights, by_duration, out);
-                }
-            }
+        let (operation, of) = match self {
+            Self::Of(instant) => return out.push((instant.clone(), weights)),
+            Self::Combined { operation, of } => (*operation, of),
+        };
+        if operation == Operation::Rate {
+            let inner = &sampled.of[0];
+            *by_duration += rate::by_duration(run, &inner.values, &weights);
+            let weights = rate::spread(run, &weights);
+            return of[0].spread((run, inner), weights, by_duration, out);
+        }
+        for (which, (own, inner)) in of.iter().zip(&sampled.of).enumerate() {
+            let by = |(k, &weight): (usize, &f64)| match weight == 0.0 {
+                true => 0.0,
+                false => weight * operation.by(&values_at(&sampled.of, k), which),
+            };
+            let weights = weights.iter().enumerate().map(by).collect();
+            own.spread((run, inner), weights, by_duration, out);
         }
     }
 }
 
-fn values_at<S: Copy>(all: &[Vec<S>], k: usize) -> Vec<S> {
-    all.iter().map(|own| own[k]).collect()
+fn values_at<S: Copy>(all: &[Sampled<S>], k: usize) -> Vec<S> {
+    all.iter().map(|own| own.values[k]).collect()
 }

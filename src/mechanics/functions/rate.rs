@@ -7,6 +7,7 @@
 //!
 //! with the fraction τ of the duration T. After the last kink dt/dτ changes with the duration.
 
+use super::interpolation;
 use crate::integrate::Trajectory;
 use crate::math::Scalar;
 
@@ -33,9 +34,7 @@ fn weights<S: Scalar>(run: &Trajectory<S>, nodes: &[usize], k: usize) -> Vec<(us
             (true, true) => last += 1,
         }
     }
-    let own: Vec<usize> = (first..=last).collect();
-    let all = slopes(&own, at, place);
-    all.map(|(i, weight)| (nodes[i], weight)).collect()
+    interpolation::slope(run, &nodes[first..=last], at)
 }
 
 /// The samples of the polynomials.
@@ -92,21 +91,4 @@ pub(super) fn by_duration(run: &Trajectory<f64>, values: &[f64], by: &[f64]) -> 
         -by[k] * all[k] * growth / width
     };
     (0..by.len()).filter(|&k| by[k] != 0.0).map(part).sum()
-}
-
-/// The derivative at `at` of the polynomial through nodes at `place`: pairs (node, weight).
-pub(super) fn slopes(
-    nodes: &[usize],
-    at: f64,
-    place: impl Fn(usize) -> f64,
-) -> impl Iterator<Item = (usize, f64)> {
-    nodes.iter().map(move |&j| {
-        let others = || nodes.iter().copied().filter(move |&i| i != j);
-        let one = |m: usize| {
-            let rest = others().filter(|&i| i != m);
-            let factor = 1.0 / (place(j) - place(m));
-            rest.fold(factor, |w, i| w * (at - place(i)) / (place(j) - place(i)))
-        };
-        (j, others().map(one).sum())
-    })
 }

@@ -7,6 +7,7 @@ use super::turning::Rotation;
 use crate::integrate::Trajectory;
 use crate::math::Scalar;
 use crate::model::Model;
+use crate::system::joints::JointCotangent;
 use crate::system::{BodyMotion, InMotion, Numbering, flexible};
 
 /// A model at one instant.
@@ -114,4 +115,15 @@ pub struct SnapshotCotangent<'a> {
     pub time: &'a mut f64,
     /// Of the model's parameters.
     pub model: &'a mut Model<f64>,
+}
+
+impl SnapshotCotangent<'_> {
+    /// Those of positions, velocities and parameters.
+    pub(super) fn of_states(&mut self) -> JointCotangent<'_> {
+        JointCotangent {
+            y: Some(&mut *self.y),
+            v: Some(&mut *self.v),
+            model: &mut *self.model,
+        }
+    }
 }

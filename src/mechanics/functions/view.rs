@@ -10,13 +10,13 @@
 //!
 //! On ground R_B = 1 and x_B is fixed.
 
+use super::measure::pull_point;
 use super::seen::{Seen, SeenPart};
 use super::snapshot::{Snapshot, SnapshotCotangent};
 use crate::math::scalar::length;
 use crate::math::{Scalar, Vec3};
 use crate::system::BodyMotion;
 use crate::system::bodies::add6;
-use crate::system::marker::{self, MarkerKinematics};
 
 /// Both points, and what body B sees.
 struct View<S> {
@@ -26,7 +26,7 @@ struct View<S> {
     position: Vec3<S>,
     /// m.
     rate: Vec3<S>,
-    a: BodyMotion<S>,
+    /// The motion of body B.
     b: BodyMotion<S>,
 }
 
@@ -48,7 +48,6 @@ impl<S: Scalar> Seen<S> {
             apart,
             position: b.rotation.tr_mul(&apart),
             rate: b.rotation.tr_mul(&rate),
-            a,
             b,
         }
     }
@@ -100,10 +99,10 @@ impl Seen<f64> {
         };
         let turn = by_position.cross(&view.position) + by_rate.cross(&view.rate);
         let [x, rate] = [by_position, by_rate].map(|by| view.b.rotation * by);
-        own.point += pull_point(at, (self.body, &view.a, &self.point), [x, rate], out);
+        own.point += pull_point(at, self.body, &self.point, [x, rate, none], out);
         match self.from {
             Some(body) => {
-                own.eye += pull_point(at, (body, &view.b, &self.eye), [-x, -rate], out);
+                own.eye += pull_point(at, body, &self.eye, [-x, -rate, none], out);
                 let o = at.numbering.velocity(body);
                 add6(&mut out.y[o..], &none, &turn);
                 add6(&mut out.v[o..], &none, &by_omega);
@@ -111,27 +110,4 @@ impl Seen<f64> {
             None => own.eye -= x,
         }
     }
-}
-
-/// Pulls cotangents of a point's position and velocity back. Returns the cotangent of the point.
-fn pull_point(
-    at: &Snapshot<f64>,
-    (body, motion, point): (usize, &BodyMotion<f64>, &Vec3<f64>),
-    [x, rate]: [Vec3<f64>; 2],
-    out: &mut SnapshotCotangent,
-) -> Vec3<f64> {
-    let by = marker::pull_back(
-        motion,
-        point,
-        &MarkerKinematics {
-            x,
-            rate,
-            acceleration: Vec3::zeros(),
-            virtual_rate: Vec3::zeros(),
-        },
-    );
-    let o = at.numbering.velocity(body);
-    add6(&mut out.y[o..], &x, &by.theta);
-    add6(&mut out.v[o..], &rate, &by.omega);
-    by.vector
 }

@@ -5,7 +5,8 @@
 //! the duration, and smooth in all of them.
 
 use super::function::Reduction;
-use super::peak::{Maximum, Stretch, peaks, stretches};
+use super::interpolation;
+use super::peak::{Maximum, Point, Stretch, peaks, stretches};
 use super::window::Placed;
 use crate::integrate::Trajectory;
 use crate::integrate::quadrature::{NODES, WEIGHTS};
@@ -40,19 +41,6 @@ struct Span<S> {
     duration: S,
 }
 
-/// Lagrange weights of the samples of a stretch at the fraction `at`.
-fn lagrange<T: Scalar, S: Scalar>(run: &Trajectory<T>, of: &Stretch, at: S) -> Vec<(usize, S)> {
-    let place = |k: usize| run.instants[k];
-    let weight = |&j: &usize| {
-        let others = of.samples.iter().filter(|&&i| i != j);
-        let product = others.fold(S::one(), |w, &i| {
-            w * (at - place(i)) / (place(j) - place(i))
-        });
-        (j, product)
-    };
-    of.samples.iter().map(weight).collect()
-}
-
 /// The weighed sum of samples; weights have the sum one. It is summed relative to the first, so that the derivatives of
 /// the weights, whose sum is zero, do not cancel at the size of the values.
 fn reading<S: Scalar>(of: &[(usize, S)], values: &[S]) -> S {
@@ -62,14 +50,22 @@ fn reading<S: Scalar>(of: &[(usize, S)], values: &[S]) -> S {
     })
 }
 
-/// The stretch whose part holds the fraction `at`, the earlier of two.
-fn stretch_at<'a, T: Scalar>(run: &Trajectory<T>, all: &'a [Stretch], at: f64) -> &'a Stretch {
+/// The samples of the polynomial at the fraction `at`; of two parts that meet there, of the earlier.
+fn samples_at<T: Scalar>(run: &Trajectory<T>, at: f64) -> Vec<usize> {
+    let mut all = stretches(run);
     let end = |own: &Stretch| run.instants[own.samples[own.part.end]];
     let which = all.partition_point(|own| end(own) < at);
-    &all[which.min(all.len() - 1)]
+    all.swap_remove(which.min(all.len() - 1)).samples
 }
 
 impl<S: Scalar> Span<S> {
+    fn of(run: &Trajectory<S>, ends: &[Placed<S>; 2]) -> Self {
+        Self {
+            ends: [ends[0].at, ends[1].at],
+            duration: run.duration,
+        }
+    }
+
     /// The nodes of the window. `parts` is the number of parts of a piece, from the change of the quantity in it.
     fn nodes<T: Scalar>(
         &self,
@@ -101,7 +97,7 @@ impl<S: Scalar> Span<S> {
                     let start = a + width * part as f64;
                     for (x, weight) in NODES.into_iter().zip(WEIGHTS) {
                         all.push(Node {
-                            of: lagrange(run, &stretch, start + width * x),
+                            of: interpolation::value(run, &stretch.samples, start + width * x),
                             seconds: seconds * width * weight,
                         });
                     }
@@ -113,24 +109,22 @@ impl<S: Scalar> Span<S> {
 
     /// Values in order of time between which the quantity rises or falls: at the ends of the window, and at
     /// samples and turning points inside. Each as a sum of samples.
-    fn points<T: Scalar>(&self, run: &Trajectory<T>, values: &[S]) -> Vec<(S, Vec<(usize, f64)>)> {
-        let all = stretches(run);
-        let edge = |at: S| {
-            let of = lagrange(run, stretch_at(run, &all, at.re()), at);
-            let real = of.iter().map(|&(k, weight)| (k, weight.re())).collect();
-            (reading(&of, values), real)
+    fn points<T: Scalar>(&self, run: &Trajectory<T>, values: &[S]) -> Vec<(f64, Point<S>)> {
+        let edge = |end: S| {
+            let of = interpolation::value(run, &samples_at(run, end.re()), end);
+            let point = Point {
+                value: reading(&of, values),
+                of: of.iter().map(|&(k, weight)| (k, weight.re())).collect(),
+            };
+            (end.re(), point)
         };
-        let [low, high] = self.ends.map(|end| end.re());
-        let inside = peaks(run, values).into_iter();
+        let [from, to] = self.ends.map(edge);
         // An end of the window stands for a sample at the same place: between two equal values the quantity neither
         // rises nor falls.
-        let inside = inside.filter(|(at, _)| *at > low + BESIDE && *at < high - BESIDE);
-        let inside = inside.map(|(_, point)| (point.value, point.of));
-        let first = edge(self.ends[0]);
-        std::iter::once(first)
-            .chain(inside)
-            .chain([edge(self.ends[1])])
-            .collect()
+        let (low, high) = (from.0 + BESIDE, to.0 - BESIDE);
+        let inside = peaks(run, values).into_iter();
+        let inside = inside.filter(|(at, _)| *at > low && *at < high);
+        std::iter::once(from).chain(inside).chain([to]).collect()
     }
 
     /// The reduction and, if `by_values` is given, its derivatives in the samples.
@@ -151,9 +145,8 @@ impl<S: Scalar> Span<S> {
         };
         match reduction {
             Reduction::Final => {
-                let stretches = stretches(run);
                 let at = self.ends[1];
-                let of = lagrange(run, stretch_at(run, &stretches, at.re()), at);
+                let of = interpolation::value(run, &samples_at(run, at.re()), at);
                 give(&of, 1.0);
                 reading(&of, values)
             }
@@ -174,11 +167,11 @@ impl<S: Scalar> Span<S> {
                 bound: Bound::Above,
             } => {
                 let points = self.points(run, values);
-                let heights: Vec<S> = points.iter().map(|point| point.0).collect();
+                let heights: Vec<S> = points.iter().map(|(_, point)| point.value).collect();
                 let soft = SoftMax::new(&heights, |i| S::from(turns_at(&heights, i)), rho);
-                for (weight, (_, of)) in soft.weights.iter().zip(&points) {
-                    let of: Vec<(usize, S)> = of.iter().map(|&(k, w)| (k, S::from(w))).collect();
-                    give(&of, weight.re());
+                for (weight, (_, point)) in soft.weights.iter().zip(&points) {
+                    let of = point.of.iter().map(|&(k, w)| (k, S::from(w)));
+                    give(&of.collect::<Vec<_>>(), weight.re());
                 }
                 soft.ks
             }
@@ -225,11 +218,7 @@ pub(super) fn value<S: Scalar>(
     ends: &[Placed<S>; 2],
     values: &[S],
 ) -> S {
-    let span = Span {
-        ends: [ends[0].at, ends[1].at],
-        duration: run.duration,
-    };
-    span.reduce(reduction, run, values, None)
+    Span::of(run, ends).reduce(reduction, run, values, None)
 }
 
 /// Its derivatives.
@@ -240,18 +229,14 @@ pub(super) fn derivatives(
     values: &[f64],
 ) -> Windowed {
     let mut by_values = vec![0.0; values.len()];
-    let ends = [ends[0].at, ends[1].at];
-    let real = Span {
-        ends,
-        duration: run.duration,
-    };
+    let real = Span::of(run, ends);
     real.reduce(reduction, run, values, Some(&mut by_values));
     let lifted: Vec<Dual> = values.iter().map(|&x| Dual::from(x)).collect();
     let by = |which: usize| {
         let seed = |i: usize, x: f64| Dual::new(x, if i == which { 1.0 } else { 0.0 });
         let span = Span {
-            ends: [seed(0, ends[0]), seed(1, ends[1])],
-            duration: seed(2, run.duration),
+            ends: [seed(0, real.ends[0]), seed(1, real.ends[1])],
+            duration: seed(2, real.duration),
         };
         span.reduce(reduction, run, &lifted, None).infinitesimal()
     };
@@ -268,23 +253,14 @@ pub(super) fn maximum<S: Scalar>(
     ends: &[Placed<S>; 2],
     values: &[S],
 ) -> Maximum {
-    let [low, high] = [ends[0].at.re(), ends[1].at.re()];
-    let duration = run.duration.re();
-    let all = stretches(run);
-    let edge = |at: f64| {
-        let of = lagrange(run, stretch_at(run, &all, at), S::from(at));
-        (at, reading(&of, values).re())
-    };
-    let inside = peaks(run, values).into_iter();
-    let inside = inside.map(|(at, point)| (at, point.value.re()));
-    let inside = inside.filter(|(at, _)| *at > low && *at < high);
-    let points = inside.chain([edge(low), edge(high)]);
+    let points = Span::of(run, ends).points(run, values).into_iter();
+    let points = points.map(|(at, point)| (at, point.value.re()));
     let top = points.fold((0.0, f64::NEG_INFINITY), |best, point| {
         if point.1 > best.1 { point } else { best }
     });
     Maximum {
         value: top.1,
-        time: top.0 * duration,
+        time: top.0 * run.duration.re(),
         error: 0.0,
     }
 }

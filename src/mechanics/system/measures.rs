@@ -209,7 +209,7 @@ fn pull_point(side: &JointSide<f64>, x: &Vec3<f64>, by: &mut SideCotangent<f64>)
 }
 
 /// The sides of a joint without its drives.
-fn undriven<'a, S: Scalar>(
+pub(super) fn undriven<'a, S: Scalar>(
     joint: &Joint<S>,
     motions: &'a [BodyMotion<S>],
     ground: &'a BodyMotion<S>,

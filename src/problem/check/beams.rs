@@ -1,6 +1,6 @@
 //! Beams with elastic coordinates.
 
-use super::Checker;
+use super::{Checker, rigid_keys};
 use crate::beam::{modes, shears};
 use crate::finding::Finding;
 use crate::pointer::{advice, join};
@@ -73,15 +73,7 @@ impl Checker<'_> {
         body: &Body,
         (own, expected): (&str, &str),
     ) {
-        let extra = [
-            ("shape", body.shape.is_some()),
-            ("density", body.density.is_some()),
-            ("mass", body.mass.is_some()),
-            ("centre_of_mass", body.centre_of_mass.is_some()),
-            ("inertia", body.inertia.is_some()),
-            ("mass_properties", body.mass_properties.is_some()),
-        ];
-        for (key, _) in extra.into_iter().filter(|(_, given)| *given) {
+        for key in rigid_keys(body) {
             let found = format!("\"{key}\" beside \"{own}\"");
             self.fault(Finding::new(join(pointer, key), found, expected).of_key());
         }

@@ -1,6 +1,6 @@
 //! Bodies of finite elements.
 
-use super::Checker;
+use super::{Checker, rigid_keys};
 use crate::composing::is_wanted;
 use crate::elements::{frame_nodes, prepare};
 use crate::finding::Finding;
@@ -31,16 +31,8 @@ impl Checker<'_> {
         (name, body): (&str, &Body),
         elements: &Elements,
     ) {
-        let extra = [
-            ("shape", body.shape.is_some()),
-            ("density", body.density.is_some()),
-            ("mass", body.mass.is_some()),
-            ("centre_of_mass", body.centre_of_mass.is_some()),
-            ("inertia", body.inertia.is_some()),
-            ("mass_properties", body.mass_properties.is_some()),
-            ("points", !body.points.is_empty()),
-        ];
-        for (key, _) in extra.into_iter().filter(|(_, given)| *given) {
+        let points = (!body.points.is_empty()).then_some("points");
+        for key in rigid_keys(body).chain(points) {
             let found = format!("\"{key}\" beside \"elements\"");
             let expected = match key {
                 "points" => "the points of \"elements\", which are nodes and edges",

@@ -1,6 +1,6 @@
 //! Bodies and placements.
 
-use super::Checker;
+use super::{Checker, rigid_keys};
 use crate::finding::Finding;
 use crate::mass::{mass_properties, volume};
 use crate::placement::{GROUND, placement_order};
@@ -83,14 +83,7 @@ impl Checker<'_> {
     /// Checks that the mass properties of a body are given once, and are those of a solid.
     fn mass(&mut self, pointer: &str, body: &Body) {
         if body.mass_properties.is_some() {
-            let extra = [
-                ("shape", body.shape.is_some()),
-                ("density", body.density.is_some()),
-                ("mass", body.mass.is_some()),
-                ("centre_of_mass", body.centre_of_mass.is_some()),
-                ("inertia", body.inertia.is_some()),
-            ];
-            for (key, _) in extra.into_iter().filter(|(_, given)| *given) {
+            for key in rigid_keys(body).filter(|key| *key != "mass_properties") {
                 let found = format!("\"{key}\" beside \"mass_properties\"");
                 let expected = "one of them, as the surface gives it";
                 self.fault(Finding::new(join(pointer, key), found, expected).of_key());

@@ -150,3 +150,17 @@ impl<'a> Checker<'a> {
         }
     }
 }
+
+/// The keys of rigid bodies that a body has.
+fn rigid_keys(body: &Body) -> impl Iterator<Item = &'static str> {
+    let all = [
+        ("shape", body.shape.is_some()),
+        ("density", body.density.is_some()),
+        ("mass", body.mass.is_some()),
+        ("centre_of_mass", body.centre_of_mass.is_some()),
+        ("inertia", body.inertia.is_some()),
+        ("mass_properties", body.mass_properties.is_some()),
+    ];
+    all.into_iter()
+        .filter_map(|(key, given)| given.then_some(key))
+}

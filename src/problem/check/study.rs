@@ -191,9 +191,6 @@ impl Checker<'_> {
     }
 
     pub(super) fn instant(&mut self, pointer: &str, instant: &Instant) {
-        if self.combination(pointer, instant) {
-            return;
-        }
         match instant {
             Instant::Position(component) => self.component(&join(pointer, "position"), component),
             Instant::Velocity(component) => self.component(&join(pointer, "velocity"), component),
@@ -289,7 +286,7 @@ impl Checker<'_> {
             | Instant::Quotient(_)
             | Instant::Square(_)
             | Instant::Absolute(_)
-            | Instant::Rate(_) => unreachable!("combinations are checked before"),
+            | Instant::Rate(_) => self.combination(pointer, instant),
         }
     }
 

@@ -120,8 +120,8 @@ impl Checker<'_> {
         }
     }
 
-    /// Checks combined and relative quantities; false if it is none of them.
-    pub(super) fn combination(&mut self, pointer: &str, instant: &Instant) -> bool {
+    /// Checks a combined or relative quantity.
+    pub(super) fn combination(&mut self, pointer: &str, instant: &Instant) {
         let inner = |key: &str| join(pointer, key);
         match instant {
             Instant::Sum(all) | Instant::Product(all) => {
@@ -172,9 +172,8 @@ impl Checker<'_> {
                 self.loaded_joint(&inner("slide_rate"), &slide.joint, &kinds);
             }
             Instant::Power(of) => self.power(&inner("power"), of),
-            _ => return false,
+            _ => unreachable!("a quantity of one body is no combination"),
         }
-        true
     }
 
     /// Checks the body and the point from which another is seen.

@@ -8,14 +8,14 @@ mod nodes;
 mod numbers;
 mod standard_input;
 mod symmetry;
-mod text;
 
 pub(super) use describe::described;
 pub(super) use numbers::{numbers, scale, start};
 
-use super::bounds;
+use super::data_file::{DataFault, DataFiles};
+use super::data_text as text;
 use super::fault::Faults;
-use super::finding::{Finding, Part};
+use super::finding::Finding;
 use super::pointer::join;
 use super::source::Source;
 use crate::schema::Document;
@@ -26,10 +26,8 @@ use crate::structures::modal::interfaces::{Holding, Interface, NoReduction};
 use crate::structures::modal::loaded::{Loaded, Reduced};
 use crate::structures::modal::written::WrittenMatrix;
 use nodes::NodeTable;
-use sha2::{Digest, Sha256};
-use std::path::{Path, PathBuf};
+use std::path::Path;
 use std::sync::Arc;
-use text::TextFault;
 
 /// Fixed-interface modes where a file gives no number.
 const MODES: u32 = 10;
@@ -50,22 +48,12 @@ pub(super) fn load(
             continue;
         };
         let pointer = join(&join("/bodies", name), "modal");
-        let mut reader = Reader {
+        let mut reader = Reader(DataFiles {
             directory,
             content: &mut content,
-        };
+        });
         let loaded = reader.body(&pointer, modal);
-        let loaded = loaded.map_err(|fault| match *fault {
-            LoadFault::Data {
-                path,
-                text,
-                finding,
-            } => {
-                let file = path.display().to_string();
-                Faults::locate(vec![finding], &file, &Source::plain(&text), &[])
-            }
-            LoadFault::Document(finding) => Faults::locate(vec![finding], file, source, &[]),
-        })?;
+        let loaded = loaded.map_err(|fault| fault.located((file, source)))?;
         modal.loaded = loaded.map(Arc::new);
     }
     Ok(content)
@@ -80,32 +68,17 @@ pub(super) fn share(from: &Document, to: &mut Document) {
     }
 }
 
-/// A fault of a body.
-enum LoadFault {
-    /// In a file of it.
-    Data {
-        path: PathBuf,
-        text: String,
-        finding: Finding,
-    },
-    /// In the problem file.
-    Document(Finding),
-}
-
-struct Reader<'a> {
-    directory: &'a Path,
-    content: &'a mut String,
-}
+struct Reader<'a>(DataFiles<'a>);
 
 impl Reader<'_> {
     /// A body; none if the document names interfaces that it does not have. That fault is reported
     /// elsewhere.
-    fn body(&mut self, pointer: &str, modal: &Modal) -> Result<Option<Loaded>, Box<LoadFault>> {
+    fn body(&mut self, pointer: &str, modal: &Modal) -> Result<Option<Loaded>, Box<DataFault>> {
         let source = join(pointer, "source");
         match &modal.source {
             Files::StandardInput(file) => {
                 let place = join(&source, "standard_input");
-                let body = self.read(&place, file, standard_input::read)?;
+                let body = self.0.read(&place, file, standard_input::read)?;
                 Ok(Some(Loaded {
                     body,
                     reduced: None,
@@ -118,10 +91,11 @@ impl Reader<'_> {
                 units,
             } => {
                 let below = join(&source, "matrix_market");
-                let table = self.read(&join(&below, "nodes"), nodes, nodes::read)?;
+                let table = self.0.read(&join(&below, "nodes"), nodes, nodes::read)?;
                 let mut matrix = |key: &str, file: &str| {
                     let place = join(&below, key);
-                    self.read(&place, file, |text| matrix_market::read(text, &table))
+                    self.0
+                        .read(&place, file, |text| matrix_market::read(text, &table))
                 };
                 let pair = [matrix("stiffness", stiffness)?, matrix("mass", mass)?];
                 reduced(pointer, modal, &table, pair, units)
@@ -134,67 +108,18 @@ impl Reader<'_> {
                 units,
             } => {
                 let below = join(&source, "dmig");
-                let table = self.read(&join(&below, "nodes"), nodes, nodes::read)?;
+                let table = self.0.read(&join(&below, "nodes"), nodes, nodes::read)?;
                 let names = [
                     stiffness.as_deref().unwrap_or("KAAX"),
                     mass.as_deref().unwrap_or("MAAX"),
                 ];
                 let place = join(&below, "file");
-                let pair = self.read(&place, file, |text| dmig::read(text, &table, names))?;
+                let pair = self
+                    .0
+                    .read(&place, file, |text| dmig::read(text, &table, names))?;
                 reduced(pointer, modal, &table, pair, units)
             }
         }
-    }
-
-    /// Reads a file that the entry at `pointer` names.
-    fn read<T>(
-        &mut self,
-        pointer: &str,
-        file: &str,
-        parse: impl FnOnce(&str) -> Result<T, TextFault>,
-    ) -> Result<T, Box<LoadFault>> {
-        let path = self.directory.join(file);
-        let document = |found: String| {
-            let expected = "a file that can be read; its path is relative to the problem file";
-            Box::new(LoadFault::Document(Finding::new(pointer, found, expected)))
-        };
-        let named = path.display();
-        let bytes = bounds::read(&path).map_err(|error| match error.kind() {
-            _ if path.is_dir() => document(format!("the directory {named}")),
-            std::io::ErrorKind::NotFound => document(format!("no file {named}")),
-            _ => document(format!("{error} of {named}")),
-        })?;
-        if bytes.len() > bounds::LARGEST {
-            return Err(document(format!(
-                "a file of more than {} MB, {named}",
-                bounds::LARGEST >> 20
-            )));
-        }
-        let hash = Sha256::digest(&bytes);
-        self.content
-            .extend(hash.iter().map(|byte| format!("{byte:02x}")));
-        let data = |text: String, fault: TextFault| {
-            Box::new(LoadFault::Data {
-                path: path.clone(),
-                text,
-                finding: Finding {
-                    part: Part::Bytes(fault.at),
-                    ..Finding::new(pointer, fault.found, fault.expected).hint(fault.hint)
-                },
-            })
-        };
-        let text = String::from_utf8(bytes).map_err(|error| {
-            let at = error.utf8_error().valid_up_to();
-            let text = String::from_utf8_lossy(error.as_bytes()).into_owned();
-            let end = at + char::REPLACEMENT_CHARACTER.len_utf8();
-            data(
-                text,
-                TextFault::new(at..end, "a byte that is not UTF-8", "a text"),
-            )
-        })?;
-        // A text may begin with a byte order mark.
-        let written = text.strip_prefix('\u{feff}').unwrap_or(&text);
-        parse(written).map_err(|fault| data(written.to_owned(), fault))
     }
 }
 
@@ -205,10 +130,10 @@ fn reduced(
     table: &NodeTable,
     [mut stiffness, mut mass]: [WrittenMatrix; 2],
     units: &Units,
-) -> Result<Option<Loaded>, Box<LoadFault>> {
+) -> Result<Option<Loaded>, Box<DataFault>> {
     let at = |place: &str, found: String, expected: &str, hint: Option<&str>| {
         let finding = Finding::new(place, found, expected);
-        Box::new(LoadFault::Document(finding.hint(hint.map(str::to_owned))))
+        Box::new(DataFault::Document(finding.hint(hint.map(str::to_owned))))
     };
     let document = |key: &str, found: String, expected: &str, hint: Option<&str>| {
         at(&join(pointer, key), found, expected, hint)

@@ -3,14 +3,13 @@
 mod solid;
 mod stl;
 
-use super::bounds;
+use super::data_file::{DataFault, DataFiles};
 use super::fault::Faults;
 use super::finding::Finding;
 use super::pointer::join;
 use super::source::Source;
 use crate::schema::Document;
 use crate::schema::mechanics::{Solid, Surface};
-use sha2::{Digest, Sha256};
 use std::path::Path;
 use std::sync::Arc;
 
@@ -29,12 +28,13 @@ pub(super) fn load(
         let Some(surface) = &mut body.mass_properties else {
             continue;
         };
-        let found = read(&directory.join(&surface.stl), surface, &mut content);
-        let solid = found.map_err(|(found, expected)| {
-            let pointer = join(&join(&join("/bodies", name), "mass_properties"), "stl");
-            let finding = Finding::new(pointer, found, expected);
-            Faults::locate(vec![finding], file, source, &[])
-        })?;
+        let pointer = join(&join(&join("/bodies", name), "mass_properties"), "stl");
+        let mut files = DataFiles {
+            directory,
+            content: &mut content,
+        };
+        let solid = read(&mut files, &pointer, surface);
+        let solid = solid.map_err(|fault| fault.located((file, source)))?;
         surface.solid = Some(Arc::new(solid));
     }
     Ok(content)
@@ -49,30 +49,14 @@ pub(super) fn share(from: &Document, to: &mut Document) {
     }
 }
 
-/// The solid inside the surface of a file, or what was found and expected.
-fn read(
-    path: &Path,
-    surface: &Surface,
-    content: &mut String,
-) -> Result<Solid, (String, &'static str)> {
-    let shown = path.display();
-    let expected = "a file that can be read; its path is relative to the problem file";
-    let bytes = bounds::read(path).map_err(|error| {
-        let found = match error.kind() {
-            _ if path.is_dir() => format!("the directory {shown}"),
-            std::io::ErrorKind::NotFound => format!("no file {shown}"),
-            _ => format!("{error} of {shown}"),
-        };
-        (found, expected)
-    })?;
-    if bytes.len() > bounds::LARGEST {
-        let found = format!("a file of more than {} MB, {shown}", bounds::LARGEST >> 20);
-        return Err((found, expected));
-    }
-    let hash = Sha256::digest(&bytes);
-    content.extend(hash.iter().map(|byte| format!("{byte:02x}")));
-    let in_file =
-        |(found, expected): (String, &'static str)| (format!("{found} in {shown}"), expected);
+/// The solid inside the surface that the entry at `pointer` names.
+fn read(files: &mut DataFiles, pointer: &str, surface: &Surface) -> Result<Solid, Box<DataFault>> {
+    let bytes = files.bytes(pointer, &surface.stl)?;
+    let in_file = |(found, expected): (String, &'static str)| {
+        let shown = files.directory.join(&surface.stl);
+        let found = format!("{found} in {}", shown.display());
+        Box::new(DataFault::Document(Finding::new(pointer, found, expected)))
+    };
     let triangles = stl::triangles(&bytes).map_err(in_file)?;
     solid::inside(&triangles, surface.unit.metres()).map_err(in_file)
 }

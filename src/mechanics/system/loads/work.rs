@@ -9,7 +9,7 @@ use crate::model::DegreeOfFreedom;
 use crate::system::bodies::{BodyMotion, add6};
 use crate::system::in_motion::InMotion;
 use crate::system::joints::JointCotangent;
-use crate::system::{constraint, side::JointSide};
+use crate::system::{constraint, measures};
 
 /// Velocities of both bodies of a load, linear in ground axes and angular in body axes.
 fn velocities<S: Scalar>(at: &Acting<S>) -> [(Vec3<S>, Vec3<S>); 2] {
@@ -62,11 +62,11 @@ fn at_joint<S: Scalar, T>(
 ) -> T {
     let ground = BodyMotion::ground();
     let joint = &here.model.joints[joint];
-    let motion_b = joint.body_b.map_or(&ground, |body| &here.motions[body]);
+    let (a, b) = measures::undriven(joint, here.motions, &ground);
     visit(&Acting {
         bodies: [Some(joint.body_a), joint.body_b],
-        a: JointSide::fixed(&here.motions[joint.body_a], joint.frame_a),
-        b: JointSide::fixed(motion_b, joint.frame_b),
+        a,
+        b,
         counted: None,
     })
 }

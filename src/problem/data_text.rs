@@ -4,7 +4,7 @@ use std::ops::Range;
 
 /// A fault at a place of a data file.
 #[derive(Clone, Debug, PartialEq)]
-pub(super) struct TextFault {
+pub(crate) struct TextFault {
     /// Bytes of the file.
     pub at: Range<usize>,
     pub found: String,
@@ -13,7 +13,7 @@ pub(super) struct TextFault {
 }
 
 impl TextFault {
-    pub(super) fn new(
+    pub(crate) fn new(
         at: Range<usize>,
         found: impl Into<String>,
         expected: impl Into<String>,
@@ -26,7 +26,7 @@ impl TextFault {
         }
     }
 
-    pub(super) fn hint(self, hint: &str) -> Self {
+    pub(crate) fn hint(self, hint: &str) -> Self {
         Self {
             hint: Some(hint.to_owned()),
             ..self
@@ -35,15 +35,15 @@ impl TextFault {
 }
 
 /// A word and the byte at which it begins.
-pub(super) type Word<'a> = (usize, &'a str);
+pub(crate) type Word<'a> = (usize, &'a str);
 
 /// The bytes of a word.
-pub(super) fn bytes((at, text): &Word) -> Range<usize> {
+pub(crate) fn bytes((at, text): &Word) -> Range<usize> {
     *at..at + text.len()
 }
 
 /// The lines of a text and where they begin, without their ends.
-pub(super) fn lines(text: &str) -> impl Iterator<Item = (usize, &str)> {
+pub(crate) fn lines(text: &str) -> impl Iterator<Item = (usize, &str)> {
     let mut at = 0;
     text.split_inclusive('\n').map(move |line| {
         let start = at;
@@ -53,7 +53,7 @@ pub(super) fn lines(text: &str) -> impl Iterator<Item = (usize, &str)> {
 }
 
 /// The words of a line that begins at a byte; separators beside white space are those of `also`.
-pub(super) fn words<'a>(start: usize, line: &'a str, also: char) -> impl Iterator<Item = Word<'a>> {
+pub(crate) fn words<'a>(start: usize, line: &'a str, also: char) -> impl Iterator<Item = Word<'a>> {
     let ends = move |c: char| c.is_ascii_whitespace() || c == also;
     let mut at = 0;
     std::iter::from_fn(move || {
@@ -68,7 +68,7 @@ pub(super) fn words<'a>(start: usize, line: &'a str, also: char) -> impl Iterato
 }
 
 /// A finite number; the exponent may be written as by Fortran: 1.5D+03, 1.5+3.
-pub(super) fn number(word: &Word) -> Result<f64, TextFault> {
+pub(crate) fn number(word: &Word) -> Result<f64, TextFault> {
     let text = word.1.trim();
     let plain = text.parse::<f64>().ok();
     let found = plain.or_else(|| fortran(text));
@@ -81,7 +81,7 @@ pub(super) fn number(word: &Word) -> Result<f64, TextFault> {
 
 /// Half a unit of the last digit of a written number: the largest change by rounding. A whole
 /// number without point and exponent is exact.
-pub(super) fn rounding(word: &Word) -> f64 {
+pub(crate) fn rounding(word: &Word) -> f64 {
     let text = word.1.trim().trim_start_matches(['+', '-']);
     let mantissa = text
         .find(|c: char| !c.is_ascii_digit() && c != '.')
@@ -120,7 +120,7 @@ fn fortran(text: &str) -> Option<f64> {
 }
 
 /// A whole number of at least `least`.
-pub(super) fn whole(word: &Word, least: u64, what: &str) -> Result<u64, TextFault> {
+pub(crate) fn whole(word: &Word, least: u64, what: &str) -> Result<u64, TextFault> {
     let text = word.1.trim();
     match text.parse::<u64>() {
         Ok(n) if n >= least => Ok(n),
@@ -129,7 +129,7 @@ pub(super) fn whole(word: &Word, least: u64, what: &str) -> Result<u64, TextFaul
 }
 
 /// A word in quotes, shortened.
-pub(super) fn quoted(text: &str) -> String {
+pub(crate) fn quoted(text: &str) -> String {
     match text.chars().count() {
         0 => "nothing".into(),
         1..=40 => format!("\"{text}\""),
