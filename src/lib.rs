@@ -69,10 +69,11 @@ use flexbody_report as report;
 pub use flexbody_mechanics::structures;
 pub use flexbody_optimiser as optimiser;
 
+pub use driver::aggregates::Unread;
 pub use library::{
     Analysis, BodyState, CaseAtRest, CheckedDerivative, Cotangents, Design, ElasticStates,
     Energies, Interrupt, Iteration, Mode, Motion, OptimisationError, OptimisationOptions, Optimum,
-    PageError, Reactions, Rest, SimulationError, check, modes, optimise, optimise_with,
-    page_of_design, rest, simulate, start_states, unresolved,
+    PageError, Reactions, Rest, SimulationError, check, load, modes, optimise, optimise_with,
+    page_of_design, parse, rest, simulate, start_states, unresolved,
 };
 pub use problem::{Fault, Faults, Override, OverrideError, Problem, Sense, Variable};

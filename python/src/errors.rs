@@ -1,6 +1,6 @@
 //! The exceptions of the package, which its file `errors.py` defines.
 
-use flexbody::{Faults, OptimisationError, SimulationError};
+use flexbody::{Faults, OptimisationError, SimulationError, Unread};
 use pyo3::exceptions::{PyKeyboardInterrupt, PyOSError, PyValueError};
 use pyo3::prelude::*;
 
@@ -14,7 +14,7 @@ fn of_package(py: Python<'_>, name: &str, arguments: impl for<'py> IntoPyObject<
 }
 
 /// The faults of a problem file.
-pub(crate) fn faults(py: Python<'_>, faults: &Faults) -> PyErr {
+fn faults(py: Python<'_>, faults: &Faults) -> PyErr {
     let all: Vec<_> = faults
         .list
         .iter()
@@ -25,6 +25,19 @@ pub(crate) fn faults(py: Python<'_>, faults: &Faults) -> PyErr {
         })
         .collect();
     of_package(py, "ProblemError", all)
+}
+
+/// A problem that cannot be read, or whose aggregates are not known.
+pub(crate) fn unread(py: Python<'_>, unread: &Unread) -> PyErr {
+    match unread {
+        Unread::Faults(wrong) => faults(py, wrong),
+        Unread::NotChosen { pointer, reason } => {
+            let place = (pointer.clone(), 0_u32, 0_u32);
+            let what = (reason.clone(), "a number \"rho\"".to_owned());
+            let all = vec![(place, what, None::<String>, unread.to_string())];
+            of_package(py, "ProblemError", all)
+        }
+    }
 }
 
 /// A design without values or gradients.

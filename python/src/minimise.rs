@@ -486,6 +486,7 @@ fn result<'py>(
     let method = match outcome.method {
         Method::InteriorPoint => "interior_point",
         Method::TrustRegion => "trust_region",
+        Method::LeastSquares => "least_squares",
         Method::Auto => "auto",
     };
     out.set_item("method", method)?;

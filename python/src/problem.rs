@@ -1,7 +1,7 @@
 //! A problem for Python.
 
 use crate::arrays::{Array, Matrix, array, matrix, numbers};
-use crate::errors::{faults, interrupted, optimisation, simulation};
+use crate::errors::{interrupted, optimisation, simulation, unread};
 use crate::motion::{Judged, Motion};
 use crate::optimum::{Optimum, Wanted, optimise};
 use crate::run::{Stop, run};
@@ -207,10 +207,10 @@ impl Problem {
     fn load(py: Python<'_>, path: PathBuf, changes: Vec<(String, String)>) -> PyResult<Self> {
         let changes = overrides(changes)?;
         let own = path.clone();
-        let read = move || flexbody::Problem::load(&own, &changes);
+        let read = move || flexbody::load(&own, &changes);
         match run(py, &Stop::default(), read)? {
             Ok(problem) => Ok(Self::new(problem, Some(path))),
-            Err(wrong) => Err(faults(py, &wrong)),
+            Err(wrong) => Err(unread(py, &wrong)),
         }
     }
 
@@ -224,10 +224,10 @@ impl Problem {
     ) -> PyResult<Self> {
         let changes = overrides(changes)?;
         let own = file.clone();
-        let read = move || flexbody::Problem::parse(&text, &own.display().to_string(), &changes);
+        let read = move || flexbody::parse(&text, &own.display().to_string(), &changes);
         match run(py, &Stop::default(), read)? {
             Ok(problem) => Ok(Self::new(problem, Some(file))),
-            Err(wrong) => Err(faults(py, &wrong)),
+            Err(wrong) => Err(unread(py, &wrong)),
         }
     }
 

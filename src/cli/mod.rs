@@ -21,7 +21,9 @@ mod statics;
 mod unknown_word;
 mod work_precision;
 
+use crate::driver;
 use crate::driver::accuracy;
+use crate::driver::aggregates::{ChosenRho, Unread};
 use crate::driver::ends::Ends;
 use crate::figures;
 use crate::library::written::{self, PageError};
@@ -273,7 +275,21 @@ fn overrides(job: &Job) -> Result<Vec<Override>, Failure> {
 }
 
 fn read_with(job: &Job, overrides: &[Override]) -> Result<Problem, Failure> {
-    let mut problem = Problem::load(&job.problem, overrides).map_err(|faults| {
+    let read = |overrides: &[Override]| Problem::load(&job.problem, overrides);
+    let mut chosen = |rho: &ChosenRho| {
+        if !job.quiet {
+            tell(&format!(
+                "{rho}, chosen to be within 1 % at the start or of a limit\n"
+            ));
+        }
+    };
+    let mut problem = driver::aggregates::read(&read, overrides, &mut chosen).map_err(|unread| {
+        let faults = match unread {
+            Unread::Faults(faults) => faults,
+            Unread::NotChosen { .. } => {
+                return Failure::bad_input(format!("{}: {unread}", shown(&job.problem)));
+            }
+        };
         // A file that cannot be opened has another exit code than a faulty text.
         let mut byte = [0];
         let unread = File::open(&job.problem).and_then(|mut file| file.read(&mut byte));

@@ -5,6 +5,7 @@ pub use super::instants::{
     JointAngle, Momentum, Moving, OfBeam, Range, Rotation, SectionForce, ShellStress, Spinning,
 };
 use super::measured::Bound;
+use super::misfit::Misfit;
 use super::statics::{
     CentreOfMass, Displacement, Frequency, LowestFrequency, MomentOfInertia, OfCase,
     ReactionMoment, StaticReaction, Stress,
@@ -34,6 +35,8 @@ pub enum Function {
     MeanAbsolute(MeanAbsolute),
     /// Value at a time, or where a quantity first reaches a value.
     Value(ValueAt),
+    /// Mean square of the distances of quantities from measured values, each divided by its standard deviation.
+    Misfit(Misfit),
     /// Height of a flight path above the top of a barrier \[m\].
     Clearance(Clearance),
     /// Duration of the run; with `until`, the time of the event \[s\].
@@ -93,6 +96,7 @@ pub enum OfMotion<'a> {
     MeanSquare(&'a Over),
     MeanAbsolute(&'a MeanAbsolute),
     Value(&'a ValueAt),
+    Misfit(&'a Misfit),
     Clearance(&'a Clearance),
     Duration,
     Mass,
@@ -118,6 +122,7 @@ impl Function {
             Self::MeanSquare(own) => Some(OfMotion::MeanSquare(own)),
             Self::MeanAbsolute(own) => Some(OfMotion::MeanAbsolute(own)),
             Self::Value(own) => Some(OfMotion::Value(own)),
+            Self::Misfit(own) => Some(OfMotion::Misfit(own)),
             Self::Clearance(own) => Some(OfMotion::Clearance(own)),
             Self::Duration => Some(OfMotion::Duration),
             Self::Mass => Some(OfMotion::Mass),
@@ -146,7 +151,7 @@ pub struct Ks {
         "exclusiveMinimum" = 0,
         "design_variable" = "an aggregation parameter says what is asked, not what is built"
     ))]
-    pub rho: f64,
+    pub rho: Option<f64>,
     /// "below" (default): never above the true maximum. "above": never below it, as an upper limit
     /// needs.
     pub bound: Option<Bound>,
@@ -166,7 +171,7 @@ pub struct Aggregate {
         "exclusiveMinimum" = 0,
         "design_variable" = "an aggregation parameter says what is asked, not what is built"
     ))]
-    pub rho: f64,
+    pub rho: Option<f64>,
     /// The quantity.
     pub of: Instant,
     /// The window of time, default the whole run.

@@ -108,7 +108,7 @@ pub struct ShellStress {
         "exclusiveMinimum" = 0,
         "design_variable" = "an aggregation parameter says what is asked, not what is built"
     ))]
-    pub rho: f64,
+    pub rho: Option<f64>,
     /// Name of a set of elements of its structure, default all.
     pub elements: Option<String>,
 }

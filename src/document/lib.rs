@@ -10,6 +10,7 @@ pub mod joints;
 pub mod loads;
 pub mod measured;
 pub mod mechanics;
+pub mod misfit;
 pub mod modal;
 pub mod names;
 pub mod parts;
@@ -339,6 +340,8 @@ pub enum OptimisationMethod {
     InteriorPoint,
     /// Trust-region sequential quadratic programming: fewest simulations for few variables.
     TrustRegion,
+    /// Trust region on the residuals of a misfit, by Gauss and Newton. It is the default where the objective is a misfit.
+    LeastSquares,
     /// Interior point; if it does not converge, trust region from its best point.
     Auto,
 }
@@ -347,7 +350,7 @@ pub enum OptimisationMethod {
 #[derive(Clone, Debug, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 pub struct Optimiser {
-    /// Algorithm, default interior point.
+    /// Algorithm, default interior point; least squares where the objective is a misfit to minimise.
     pub method: Option<OptimisationMethod>,
     /// The optimiser stops at this scaled residual of the optimality conditions.
     #[schemars(extend(

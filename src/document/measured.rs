@@ -119,7 +119,7 @@ pub struct LargestSectionForce {
         "exclusiveMinimum" = 0,
         "design_variable" = "an aggregation parameter says what is asked, not what is built"
     ))]
-    pub rho: f64,
+    pub rho: Option<f64>,
     /// "below" (default): never above the largest. "above": never below it.
     pub bound: Option<Bound>,
 }
@@ -150,7 +150,7 @@ pub struct LargestFibreStress {
         "exclusiveMinimum" = 0,
         "design_variable" = "an aggregation parameter says what is asked, not what is built"
     ))]
-    pub rho: f64,
+    pub rho: Option<f64>,
     /// "below" (default): never above the largest. "above": never below it.
     pub bound: Option<Bound>,
 }

@@ -115,7 +115,7 @@ pub struct Stress {
         "exclusiveMinimum" = 0,
         "design_variable" = "an aggregation parameter says what is asked, not what is built"
     ))]
-    pub rho: f64,
+    pub rho: Option<f64>,
     /// Which aggregate, default ks.
     #[serde(default)]
     pub aggregate: StressAggregate,
@@ -250,5 +250,5 @@ pub struct LowestFrequency {
         "exclusiveMinimum" = 0,
         "design_variable" = "an aggregation parameter says what is asked, not what is built"
     ))]
-    pub rho: f64,
+    pub rho: Option<f64>,
 }

@@ -11,12 +11,12 @@ use super::analysed::{AnalysisFailure, Simulated};
 use super::check::{complex_step, own_size};
 use super::evaluate::{Derivative, Evaluated};
 use super::event;
-use super::integration::{Integration, KeptSteps};
+use super::frozen::{complex_motion, settings};
 use super::not_finite::{body, variable};
 use super::optimise::Optimisation;
 use super::statics::{self, StaticDesign, StaticsFailure};
 use crate::functions::Function;
-use crate::integrate::{IntegrationFailure, Settings, Spacing, simulate};
+use crate::integrate::{IntegrationFailure, Settings};
 use crate::math::Complex64;
 use crate::math::scalar::COMPLEX_STEP;
 use crate::problem::Problem;
@@ -219,17 +219,11 @@ fn certified_statics(
 /// direction is the sum.
 fn sums_of_terms(
     problem: &Problem,
-    (settings, (duration, rate)): (&Settings, (f64, f64)),
+    (settings, event): (&Settings, (f64, f64)),
     at: &Evaluated,
     direction: &[f64],
 ) -> Result<Vec<f64>, IntegrationFailure> {
-    let along = at.x.iter().zip(direction);
-    let x: Vec<Complex64> = along
-        .map(|(&x, d)| Complex64::new(x, COMPLEX_STEP * d))
-        .collect();
-    let scene = problem.scene(&x);
-    let duration = event::complex_duration(&scene, settings, (duration, rate))?;
-    let run = simulate(&scene.model, duration, settings)?;
+    let (scene, run) = complex_motion(problem, settings, event, &at.x, direction)?;
     let terms = |f: &Function<Complex64>| f.terms_over_motion(&scene.model, &run) / COMPLEX_STEP;
     let mut all: Vec<f64> = scene.functions.iter().map(terms).collect();
     for f in all.len()..problem.function_names.len() {
@@ -242,23 +236,6 @@ fn sums_of_terms(
 fn sum(gradient: &[Derivative], direction: &[f64], of: fn(&Derivative, f64) -> f64) -> f64 {
     let terms = gradient.iter().zip(direction);
     terms.map(|(derivative, &by)| of(derivative, by)).sum()
-}
-
-/// The settings of a run, with its steps frozen.
-fn settings(problem: &Problem, at: &Evaluated) -> Option<Settings> {
-    let mut integration = Integration::new(problem, &at.scene, None, true);
-    integration.restore(KeptSteps {
-        method: at.run.method,
-        reason: None,
-        grid: match problem.simulation.spacing {
-            Spacing::Steps(_) if !at.run.grid.is_equal() => None,
-            Spacing::Steps(_) | Spacing::Tolerance(_) | Spacing::Frozen(_) => {
-                Some(at.run.grid.clone())
-            }
-        },
-        refreshes: 0,
-    });
-    integration.chosen().map(|(settings, _)| settings.clone())
 }
 
 /// A directional derivative, computed twice.

@@ -3,11 +3,13 @@
 use super::composed::infinitesimal;
 use super::evaluate::Evaluated;
 use super::event;
+use super::frozen::complex_motion;
 use super::integration::Integration;
 use crate::functions::seen::SeenPart;
+use crate::functions::series::Series;
 use crate::functions::snapshot::Snapshot;
 use crate::functions::{Function, Instant, Operation, Quantity, Reduction};
-use crate::integrate::{IntegrationFailure, Settings, Trajectory, simulate};
+use crate::integrate::{IntegrationFailure, Settings, Trajectory};
 use crate::math::Complex64;
 use crate::math::scalar::COMPLEX_STEP;
 use crate::model::flexible::Quadratic;
@@ -152,6 +154,11 @@ pub(super) fn own_size(at: &Evaluated, f: usize) -> f64 {
     let (of, reduction) = match &at.scene.functions[f] {
         Function::Reduced { of, reduction, .. } => (of, *reduction),
         Function::Clearance { .. } => return length.max(at.function(f).value.abs()),
+        // Its terms are squares of distances in standard deviations, whose last digits are those of the values.
+        Function::Misfit { series } => {
+            let value = at.function(f).value.abs();
+            return value.max(largest_datum(series) * value.sqrt());
+        }
         Function::Duration => return time,
         Function::OfDesign { value, .. } => return value.abs().max(1.0),
     };
@@ -163,6 +170,16 @@ pub(super) fn own_size(at: &Evaluated, f: usize) -> f64 {
         | Reduction::InducedExponential { .. } => size_of(at, of),
     };
     size.max(at.function(f).value.abs())
+}
+
+/// The largest of measured values, in standard deviations.
+pub(super) fn largest_datum(series: &[Series<f64>]) -> f64 {
+    let largest = |own: &Series<f64>| {
+        let data = own.data.values.iter().zip(&own.data.weights);
+        data.map(|(d, weight)| (d * weight).abs())
+            .fold(0.0, f64::max)
+    };
+    series.iter().map(largest).fold(0.0, f64::max)
 }
 
 /// The size of a quantity in a scene.
@@ -282,16 +299,14 @@ pub(super) fn complex_step(
     direction: &[f64],
 ) -> Result<ComplexStep, IntegrationFailure> {
     let along = x.iter().zip(direction);
-    let x: Vec<Complex64> = along
+    let moved: Vec<Complex64> = along
         .map(|(&x, d)| Complex64::new(x, COMPLEX_STEP * d))
         .collect();
-    let scene = problem.scene(&x);
-    let duration = event::complex_duration(&scene, settings, event)?;
-    let run = simulate(&scene.model, duration, settings)?;
+    let (scene, run) = complex_motion(problem, settings, event, x, direction)?;
     let value = |f: &Function<Complex64>| f.evaluate(&scene.model, &run).value;
     let values: Vec<Complex64> = scene.functions.iter().map(value).collect();
     Ok(ComplexStep {
-        derivatives: infinitesimal(&problem.composition, &x, &values, COMPLEX_STEP),
+        derivatives: infinitesimal(&problem.composition, &moved, &values, COMPLEX_STEP),
         run: run.real(),
     })
 }

@@ -1,10 +1,11 @@
 //! A problem as a nonlinear program for the optimiser.
 
 use super::analysed::Analysed;
+use super::fit;
 use super::integration::Integration;
 use super::known_evaluations::{EvaluationContext, KnownEvaluations, bits};
 use super::speculation::SpeculativeCache;
-use crate::optimiser::{Evaluation, EvaluationFailure, Gradients, Jacobian, Nlp};
+use crate::optimiser::{Evaluation, EvaluationFailure, Gradients, Jacobian, Nlp, Residuals};
 use crate::problem::{Problem, Sense};
 use crate::report::evaluations::Work;
 use std::cell::RefCell;
@@ -343,6 +344,44 @@ impl Nlp for Evaluator<'_> {
             objective: (0..n).map(|i| self.sign * scaled(0, i)).collect(),
             jacobian: Jacobian::from_fn(functions.len() - 1, n, |j, i| scaled(j + 1, i)),
         })
+    }
+
+    fn residuals(&mut self, x: &[f64]) -> Result<Option<Residuals>, EvaluationFailure> {
+        let problem = self.problem;
+        let Some(misfits) = fit::fitted(problem) else {
+            return Ok(None);
+        };
+        let x = unscaled(problem, x);
+        let found = match self.last.as_ref().filter(|last| last.x() == x) {
+            Some(last) => last
+                .residuals(problem, &misfits)
+                .map_err(|failure| failure.to_string()),
+            // The log knew values and gradients.
+            None => {
+                let mut own = self.integration.clone();
+                let found = {
+                    let which: Vec<usize> = misfits.iter().map(|&(f, _)| f).collect();
+                    Analysed::with(&mut own, problem, &x, &which)
+                };
+                let found = found.map_err(|failure| failure.to_string());
+                found.and_then(|(at, _)| {
+                    at.residuals(problem, &misfits)
+                        .map_err(|failure| failure.to_string())
+                })
+            }
+        };
+        let Some(found) = found.map_err(|reason| self.failure(reason))? else {
+            return Ok(None);
+        };
+        let rows = found.values.len();
+        Ok(Some(Residuals {
+            jacobian: Jacobian::from_fn(rows, x.len(), |k, i| {
+                found.factors[k] * found.jacobian[k][i] * problem.variables[i].scale
+            }),
+            values: { found.values.iter().zip(&found.factors) }
+                .map(|(r, factor)| factor * r)
+                .collect(),
+        }))
     }
 }
 

@@ -2,6 +2,7 @@
 //! methods on it, and test extreme scenes.
 
 pub mod accuracy;
+pub mod aggregates;
 mod alike;
 pub mod analysed;
 pub mod bases;
@@ -17,7 +18,9 @@ pub mod evaluate;
 pub mod evaluator;
 pub mod event;
 pub mod explain;
+pub mod fit;
 mod flexible_limits;
+mod frozen;
 pub mod integration;
 pub mod known_evaluations;
 pub mod memory;

@@ -2,6 +2,7 @@
 
 use super::composed;
 use super::evaluate::Evaluated;
+use crate::functions::series::Series;
 use crate::functions::{Function, Instant};
 use crate::problem::Problem;
 
@@ -33,6 +34,13 @@ pub fn value(problem: &Problem, at: &Evaluated, f: usize, value: f64) -> String 
                 format!(": its {what} is not finite from t = {time:.6e} s on{why}")
             };
             first.map(unlike).or_else(not_inside)
+        }
+        Function::Misfit { series } => {
+            let missed = |own: &Series<f64>| own.missed(&at.scene.model, &at.run);
+            series.iter().find_map(missed).map(|time| {
+                let end = at.run.duration;
+                format!(": a datum is at {time} s of the motion, which lasts from 0 to {end} s")
+            })
         }
         Function::Clearance { .. } | Function::Duration | Function::OfDesign { .. } => None,
     };

@@ -4,11 +4,12 @@
 use super::analysed::Simulated;
 use super::chaos;
 use super::evaluator::{Evaluator, Judgements, unscaled};
+use super::fit;
 use super::integration::Integration;
 use super::known_evaluations::{KnownEvaluations, bits};
 use super::record::record;
 use super::resolved;
-use crate::optimiser::{self, Observer, Options, Outcome, Phase, Row, SavedState, Status};
+use crate::optimiser::{self, Method, Observer, Options, Outcome, Phase, Row, SavedState, Status};
 use crate::problem::Problem;
 use crate::report::evaluations::Work;
 use crate::report::history::{Column, History, HistoryRow};
@@ -116,8 +117,12 @@ pub fn solve<'a>(
 fn options(problem: &Problem) -> Options {
     let given = &problem.optimiser;
     let default = Options::default();
+    let usual = match fit::fitted(problem) {
+        Some(_) => Method::LeastSquares,
+        None => default.method,
+    };
     Options {
-        method: given.method.unwrap_or(default.method),
+        method: given.method.unwrap_or(usual),
         tolerance: given.tolerance.unwrap_or(default.tolerance),
         constraint_tolerance: given
             .constraint_tolerance
@@ -168,6 +173,14 @@ impl Solved {
             };
             let told = chaotic.map(|found| found.to_string()).or(unresolved);
             optimum.warnings.extend(told);
+        }
+        if let Some(end) = &end {
+            match fit::of_end(problem, &self.outcome, end) {
+                Ok(found) => optimum.fit = found,
+                Err(failure) => (optimum.warnings).push(format!(
+                    "the worth of the fitted numbers is not known: {failure}"
+                )),
+            }
         }
         if self.unlowered > 0 {
             optimum.warnings.push(format!(

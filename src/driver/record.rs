@@ -23,7 +23,7 @@ pub(super) fn record(
     let (status, mut sentence) = outcome.status.verdict();
     if let Some(other) = &outcome.other {
         let (own, replaced) = match outcome.method {
-            Method::TrustRegion => ("trust region", "interior point"),
+            Method::TrustRegion | Method::LeastSquares => ("trust region", "interior point"),
             Method::InteriorPoint | Method::Auto => ("interior point", "trust region"),
         };
         let (_, why) = other.verdict();
@@ -172,6 +172,7 @@ pub(super) fn record(
         scaling: scaling_record(problem, outcome),
         second_order: None,
         gradient_certificate: None,
+        fit: None,
         integration: end.and_then(|end| end.integration(refreshes)),
         counts: Counts {
             iterations: outcome.counts.iterations as u64,

@@ -7,10 +7,11 @@
 //! its scale, is judged by a tenth of the largest one; one that changes the function by less than
 //! its round-off counts as zero.
 
-use super::check::own_size;
+use super::check::{largest_datum, own_size};
 use super::error::{self, FunctionError};
 use super::evaluate::Evaluated;
 use super::integration::Integration;
+use crate::functions::Function;
 use crate::integrate::{IntegrationFailure, Method, Samples, Settings, Spacing, simulate};
 use crate::problem::Problem;
 
@@ -21,6 +22,8 @@ const OF_LARGEST: f64 = 0.1;
 /// A change of a function by this part of the size of its kind, by a typical change of the
 /// variable, counts as zero.
 const NOTHING: f64 = 1e-8;
+/// Part of a standard deviation of data whose derivative counts for that of smaller residuals.
+const OF_DEVIATION: f64 = 1e-3;
 /// Derivatives on doubled steps that differ by this part of their size or less: those on the steps
 /// themselves are then far more accurate.
 const ALIKE: f64 = 0.3;
@@ -217,7 +220,16 @@ fn sizes(problem: &Problem, at: &Evaluated, f: usize, gradient: &[f64]) -> Vec<f
     let scale = |i: usize| problem.variables[i].scale;
     let scaled = gradient.iter().enumerate().map(|(i, d)| d.abs() * scale(i));
     let largest = scaled.fold(0.0, f64::max);
-    let nothing = NOTHING / LARGEST * own_size(at, f);
+    let misfits = problem.misfits(f).unwrap_or_default();
+    let largest_of = |&(g, c): &(usize, f64)| match at.scene.functions.get(g) {
+        Some(Function::Misfit { series }) => Some(c * largest_datum(series)),
+        _ => None,
+    };
+    let nothing = match misfits.iter().filter_map(largest_of).reduce(f64::max) {
+        // Residuals of a part of a standard deviation count as zero.
+        Some(datum) => OF_DEVIATION * datum,
+        None => NOTHING / LARGEST * own_size(at, f),
+    };
     let of = |(i, d): (usize, &f64)| {
         let change = scale(i).max(at.x[i].abs());
         let by_others = OF_LARGEST * largest / scale(i);

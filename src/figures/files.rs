@@ -7,6 +7,7 @@ use super::elastic_figures::{
     SEEN, colours, deflections, displaced, elastic, has_stress, keep_the_largest, limits, patches,
     stresses,
 };
+use super::fits::curves;
 use super::flight::release;
 use super::shells;
 use super::statics::figures as of_structures;
@@ -17,7 +18,7 @@ use crate::driver::ends::Ends;
 use crate::functions::snapshot::Snapshot;
 use crate::math::Vec3;
 use crate::plots::{
-    Barrier, BodyMotion, EnergyRun, History as Curves, Motion, Scenery, convergence, energy,
+    Barrier, BodyMotion, EnergyRun, History as Curves, Motion, Scenery, convergence, energy, fit,
     histories, motion,
 };
 use crate::problem::{Drawing, Outline, Problem, Trace};
@@ -28,9 +29,10 @@ use crate::report::History;
 const MOST_NUMBERS: usize = 40_000;
 
 /// The names of all figures.
-pub const NAMES: [&str; 10] = [
+pub const NAMES: [&str; 11] = [
     "convergence.svg",
     "constraints.svg",
+    "fit.svg",
     "motion.svg",
     "energy.svg",
     "deflection.svg",
@@ -74,6 +76,10 @@ fn figures(
     let mut all = Vec::new();
     if let Some(history) = history {
         all.push(("convergence.svg", convergence(history)));
+        let fits = curves(problem, designs);
+        if !fits.is_empty() {
+            all.push(("fit.svg", fit(&fits)));
+        }
     }
     let pairs = || designs.iter().zip(&drawings);
     let curves = pairs().map(|((title, design), drawing)| {

@@ -17,6 +17,7 @@ mod detail;
 pub mod elastic_figures;
 mod error;
 mod files;
+mod fits;
 mod flight;
 mod forces;
 pub mod page;

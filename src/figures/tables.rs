@@ -155,6 +155,14 @@ fn functions(problem: &Problem, simulation: &Simulation) -> String {
                     (0..=run.last()).map(at).collect(),
                 )
             }
+            Function::Misfit { series } => {
+                for own in series {
+                    let (series, what, unit) = (&own.data.name, own.of.describe(), own.of.unit());
+                    header.push(format!("{name}, {series}: {what} [{unit}]"));
+                    columns.push(own.of.sample(model, run));
+                }
+                continue;
+            }
             Function::Duration | Function::OfDesign { .. } => continue,
         };
         header.push(format!("{name}: {what} [{unit}]"));

@@ -6,6 +6,7 @@
 //!
 //! | File | Content |
 //! |---|---|
+//! | `loaded` | problems from files and texts |
 //! | `analysis` | consecutive designs: values and gradients |
 //! | `response`, `states` | a motion: histories and their pull-back; states of all bodies |
 //! | `rest` | structures under load cases, and modes |
@@ -14,6 +15,7 @@
 
 mod analysis;
 mod interrupt;
+mod loaded;
 pub(crate) mod logs;
 pub(crate) mod made;
 pub(crate) mod optimum;
@@ -29,6 +31,7 @@ use crate::problem::Problem;
 pub use crate::driver::CheckedDerivative;
 pub use analysis::{Analysis, Design};
 pub use interrupt::Interrupt;
+pub use loaded::{load, parse};
 pub use optimum::{
     Iteration, OptimisationError, OptimisationOptions, Optimum, optimise, optimise_with,
     page_of_design,

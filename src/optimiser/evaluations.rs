@@ -4,12 +4,12 @@
 use std::panic::{AssertUnwindSafe, catch_unwind};
 use std::time::Instant;
 
-use nalgebra::DVector;
+use nalgebra::{DMatrix, DVector};
 
 use crate::linear::jacobian::Jacobian;
 use crate::nlp::{
     Evaluation, EvaluationFailure, Gradients, fault_of_evaluation, fault_of_gradients,
-    length_of_evaluation, length_of_gradients,
+    fault_of_residuals, length_of_evaluation, length_of_gradients,
 };
 use crate::outcome::FailedDesign;
 use crate::program::{Derivatives, EarlyExit, Point, Program};
@@ -25,6 +25,9 @@ const MOST_FAILURES: usize = 24;
 
 /// It also ends after so many failures if they are most of its evaluations: it follows the edge.
 const AT_THE_EDGE: usize = 60;
+
+/// Scaled residuals and their derivatives in the free variables.
+pub(crate) type ScaledResiduals = (DVector<f64>, DMatrix<f64>);
 
 impl Program<'_> {
     /// Values of the scaled functions at `x`.
@@ -140,6 +143,43 @@ impl Program<'_> {
             self.gradient_norms.push(norm);
         }
         Ok(slopes)
+    }
+
+    /// Scaled residuals, whose squares sum up to the scaled objective, and their derivatives in the free variables,
+    /// at the point `x` of the last gradients.
+    pub(crate) fn residuals(
+        &mut self,
+        x: &DVector<f64>,
+    ) -> Result<Option<ScaledResiduals>, EarlyExit> {
+        let full = self.to_user(x);
+        let clock = Instant::now();
+        let mut result = unless_panicked(|| self.nlp.residuals(&full))?;
+        self.counts.evaluation_seconds += clock.elapsed().as_secs_f64();
+        let n = full.len();
+        if let Ok(Some(found)) = &result {
+            let (rows, shape) = (found.values.len(), found.jacobian.shape());
+            if shape != (rows, n) {
+                let what = format!(
+                    "the Jacobian of {rows} residuals is {} × {} where {rows} × {n} is expected",
+                    shape.0, shape.1
+                );
+                return Err(EarlyExit::Halt(Status::IllPosed { what }));
+            }
+            if let Some(fault) = fault_of_residuals(self.nlp, found) {
+                result = Err(fault);
+            }
+        }
+        self.unless_interrupted(result.is_err())?;
+        let Some(found) = result.map_err(|failure| self.record(full, failure))? else {
+            return Ok(None);
+        };
+        let unit = self.scaling.objective.sqrt();
+        let r = DVector::from_vec(found.values) * unit;
+        let whole = found.jacobian.to_dense();
+        let j = DMatrix::from_fn(r.len(), self.free.len(), |k, c| {
+            whole[(k, self.free[c])] * unit * self.scaling.variables[self.free[c]]
+        });
+        Ok(Some((r, j)))
     }
 
     /// Ends the run if an evaluation `failed` because it was interrupted.

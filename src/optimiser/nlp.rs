@@ -66,6 +66,15 @@ pub trait Nlp {
     /// [`EvaluationFailure`] as for [`Nlp::evaluate`].
     fn gradients(&mut self, x: &[f64]) -> Result<Gradients, EvaluationFailure>;
 
+    /// Residuals r of an objective f = Σ r_k² and their derivatives, at the point `x` of the last requested
+    /// gradients; `None`, as by default, if the objective is no such sum.
+    ///
+    /// # Errors
+    /// [`EvaluationFailure`] as for [`Nlp::evaluate`].
+    fn residuals(&mut self, _x: &[f64]) -> Result<Option<Residuals>, EvaluationFailure> {
+        Ok(None)
+    }
+
     /// Second derivatives of f + yᵀc for the multipliers `y` of the rows, at the point `x` of the
     /// last requested gradients. Without them, as by default, they are approximated from gradients.
     fn curvature(&mut self, _x: &[f64], _y: &[f64]) -> Option<Curvature> {
@@ -88,6 +97,15 @@ pub struct Gradients {
     /// Gradient ∇f, of length n.
     pub objective: Vec<f64>,
     /// Jacobian ∂c/∂x, m × n. Rows that touch few variables may be sparse.
+    pub jacobian: Jacobian,
+}
+
+/// Residuals of a sum of squares at one point.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Residuals {
+    /// Residuals r, of any number N.
+    pub values: Vec<f64>,
+    /// Jacobian ∂r/∂x, N × n.
     pub jacobian: Jacobian,
 }
 
@@ -139,6 +157,20 @@ pub(crate) fn fault_of_gradients(
         }
     }
     None
+}
+
+/// As [`fault_of_evaluation`], for residuals and their derivatives.
+pub(crate) fn fault_of_residuals(nlp: &dyn Nlp, r: &Residuals) -> Option<EvaluationFailure> {
+    if let Some(k) = r.values.iter().position(|v| !v.is_finite()) {
+        return Some(not_finite(format!("the residual {k}"), r.values[k]));
+    }
+    let entries = (0..r.values.len()).flat_map(|k| r.jacobian.row(k).map(move |(i, v)| (k, i, v)));
+    let (k, i, value) = { entries }.find(|(_, _, v)| !v.is_finite())?;
+    let column = nlp.variable_name(i);
+    Some(not_finite(
+        format!("the derivative of the residual {k} in {column}"),
+        value,
+    ))
 }
 
 fn not_finite(what: String, value: f64) -> EvaluationFailure {

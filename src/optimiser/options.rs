@@ -11,6 +11,9 @@ pub enum Method {
     InteriorPoint,
     /// Trust-region sequential quadratic programming with elastic subproblems.
     TrustRegion,
+    /// Trust region with the model of Gauss and Newton, for a sum of squares
+    /// ([`Nlp::residuals`](crate::Nlp::residuals)).
+    LeastSquares,
     /// Interior point. If it does not converge, the trust region continues from its best point.
     Auto,
 }

@@ -278,6 +278,7 @@ impl<'a> Program<'a> {
     pub(crate) fn first_method(&self) -> Method {
         match self.options.method {
             Method::TrustRegion => Method::TrustRegion,
+            Method::LeastSquares => Method::LeastSquares,
             Method::InteriorPoint | Method::Auto => Method::InteriorPoint,
         }
     }

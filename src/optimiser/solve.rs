@@ -132,10 +132,9 @@ fn run(
     let progress = Progress {
         optimality: scaled_residual(&program, &point, &slopes, &without_rows),
         barrier: options.first_barrier(),
-        phase: if options.method == Method::TrustRegion {
-            Phase::Sqp
-        } else {
-            Phase::Regular
+        phase: match options.method {
+            Method::TrustRegion | Method::LeastSquares => Phase::Sqp,
+            Method::InteriorPoint | Method::Auto => Phase::Regular,
         },
         ..Progress::default()
     };
@@ -168,7 +167,9 @@ fn attempt(
     push: f64,
 ) -> FinalIterate {
     let run = |program: &mut Program<'_>, (point, slopes), saved| match method {
-        Method::TrustRegion => trust_region(program, point, slopes, saved),
+        Method::TrustRegion | Method::LeastSquares => {
+            trust_region(program, point, slopes, saved, method)
+        }
         Method::InteriorPoint | Method::Auto => interior_point(program, point, slopes, saved, push),
     };
     let mut finish = run(program, first, saved);

@@ -131,7 +131,8 @@ fn perturbed(
         };
         let shift = if trial == 0 { 0.0 } else { reach * phase };
         let mut x = start[i] + shift;
-        if options.method != Method::TrustRegion || trial > 0 {
+        let inside = !matches!(options.method, Method::TrustRegion | Method::LeastSquares);
+        if inside || trial > 0 {
             x = if l.is_finite() {
                 x.max(l + margin(l))
             } else {

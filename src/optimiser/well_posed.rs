@@ -15,7 +15,8 @@ pub(crate) fn fault(nlp: &dyn Nlp, options: &Options) -> Option<Status> {
         return ill_posed(what);
     }
     let n = nlp.variables();
-    if options.method == Method::TrustRegion && n > LARGEST_TRUST_REGION {
+    let of_trust_region = matches!(options.method, Method::TrustRegion | Method::LeastSquares);
+    if of_trust_region && n > LARGEST_TRUST_REGION {
         return ill_posed(format!(
             "the trust region is meant for at most {LARGEST_TRUST_REGION} variables and the \
              program has {n}; use the interior point"

@@ -4,7 +4,7 @@
 //! Functions of the scene come first, in the order of the file, then those of expressions, each after those that it names.
 
 use super::derived::Derived;
-use super::expression::Expression;
+use super::expression::{Expression, Operator};
 use crate::math::{Dual, Scalar};
 use std::borrow::Cow;
 use std::collections::BTreeMap;
@@ -38,6 +38,17 @@ pub struct Composition {
     pub list: Vec<Composed>,
     /// Numbers that follow from a design.
     pub derived: Derived,
+}
+
+/// The value of an expression that neither functions nor variables change.
+fn fixed(of: &Expression<Term>) -> Option<f64> {
+    let fixed = |term: &&Term| matches!(term, Term::Fixed(_));
+    of.names().iter().all(fixed).then(|| {
+        of.value(&|term: &Term| match term {
+            Term::Fixed(number) => *number,
+            Term::Function(_) | Term::Place(_) => f64::NAN,
+        })
+    })
 }
 
 /// Derivatives of an expression.
@@ -112,6 +123,61 @@ impl Composition {
         own.sort_unstable();
         own.dedup();
         Cow::Owned(own)
+    }
+
+    /// The functions f_g of the scene and their factors in f = Σ c_g f_g, if function f is such a sum with factors that no
+    /// variable changes.
+    pub fn sum(&self, f: usize) -> Option<Vec<(usize, f64)>> {
+        let mut factors = BTreeMap::new();
+        self.add(f, 1.0, &mut factors)?;
+        Some(factors.into_iter().collect())
+    }
+
+    fn add(&self, f: usize, factor: f64, to: &mut BTreeMap<usize, f64>) -> Option<()> {
+        match self.gives(f) {
+            true => self.add_terms(&self.list[f - self.first].expression, factor, to),
+            false => {
+                *to.entry(f).or_default() += factor;
+                Some(())
+            }
+        }
+    }
+
+    fn add_terms(
+        &self,
+        of: &Expression<Term>,
+        factor: f64,
+        to: &mut BTreeMap<usize, f64>,
+    ) -> Option<()> {
+        match of {
+            Expression::Name(Term::Function(g)) => self.add(*g, factor, to),
+            Expression::Minus(of) => self.add_terms(of, -factor, to),
+            Expression::Binary(operator, of) => {
+                let [a, b] = &**of;
+                match operator {
+                    Operator::Plus | Operator::Minus => {
+                        let sign = if *operator == Operator::Plus {
+                            1.0
+                        } else {
+                            -1.0
+                        };
+                        self.add_terms(a, factor, to)?;
+                        self.add_terms(b, sign * factor, to)
+                    }
+                    Operator::Times => match (fixed(a), fixed(b)) {
+                        (Some(c), _) => self.add_terms(b, c * factor, to),
+                        (_, Some(c)) => self.add_terms(a, c * factor, to),
+                        _ => None,
+                    },
+                    Operator::Over => self.add_terms(a, factor / fixed(b)?, to),
+                    Operator::Power => None,
+                }
+            }
+            Expression::Number(_)
+            | Expression::Name(_)
+            | Expression::Call(..)
+            | Expression::Angle(_) => None,
+        }
     }
 
     /// Value of function f at the design `x`, with those of functions of the scene.

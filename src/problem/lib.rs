@@ -4,6 +4,7 @@
 //! of names, numbers and design variables. Each step reports all faults that it finds. Only a
 //! document without a fault becomes a [`Problem`].
 
+mod aggregates;
 mod beam;
 mod bounds;
 mod check;
@@ -32,6 +33,7 @@ mod instances;
 mod joints;
 mod loads;
 mod mass;
+mod measurements;
 mod memory;
 mod modal;
 mod notes;
@@ -66,6 +68,7 @@ use flexbody_mathematics::math;
 use flexbody_mechanics::{functions, integrate, lower, model, structures, system};
 use flexbody_optimiser as optimiser;
 
+pub use aggregates::OpenAggregate;
 pub use composed::{Composed, Composition, Partials};
 use derived::Derived;
 pub use drawing::{BarrierLine, Drawing, Outline};
@@ -77,7 +80,7 @@ pub use instances::SceneScalar;
 pub use memory::available as available_memory;
 pub use overrides::{Override, OverrideError};
 pub use schema::{schema, schema_with_expressions};
-pub use statics::{Asked, Moved, StaticScene, Statics, Workspace};
+pub use statics::{Asked, MeasuredFunction, Moved, StaticScene, Statics, Workspace};
 pub use text::{visible, visible_lines};
 pub use variables::Variable;
 
@@ -226,7 +229,8 @@ pub struct Problem {
 }
 
 impl Problem {
-    /// Reads a problem file and applies `overrides`.
+    /// Reads a problem file and applies `overrides`. Aggregates whose ρ it leaves out are NaN, see
+    /// [`Problem::open_aggregates`].
     ///
     /// # Errors
     /// All faults that are found, each with its place.
@@ -464,12 +468,24 @@ impl Problem {
         scene::own_velocities(&self.written, &self.extended(x))
     }
 
-    /// Whether bodies have files of their own.
+    /// Whether function f of the scene is a misfit.
+    fn is_misfit(&self, f: usize) -> bool {
+        let name = self.function_names.get(f);
+        let own = name.and_then(|name| self.written.functions.get(name));
+        matches!(own, Some(schema::functions::Function::Misfit(_)))
+    }
+
+    /// The misfits f_m and their factors c_m > 0 in f = Σ c_m f_m, if function f is such a sum.
+    pub fn misfits(&self, f: usize) -> Option<Vec<(usize, f64)>> {
+        let parts = self.composition.sum(f)?;
+        let all = parts.iter().all(|&(g, c)| c > 0.0 && self.is_misfit(g));
+        (all && !parts.is_empty()).then_some(parts)
+    }
+
+    /// Whether bodies or measured values have files of their own.
     pub fn names_files(&self) -> bool {
-        self.written
-            .bodies
-            .values()
-            .any(|body| body.modal.is_some())
+        let bodies = &mut self.written.bodies.values();
+        bodies.any(|body| body.modal.is_some()) || measurements::names_files(&self.written)
     }
 
     /// Number of bodies in the file.

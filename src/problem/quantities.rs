@@ -3,7 +3,9 @@
 use super::flexible::{FlexibleBodies, Sections, station, stations};
 use super::placement::{Assembly, GROUND};
 use super::starting_angles::{starting_angle, starting_turn};
+use crate::aggregates::rho_of;
 use crate::functions::seen::SeenPart;
+use crate::functions::series::Series;
 use crate::functions::{
     Bound, EnergyPart, Function, Gate, GateSide, Instant, Operation, Projectile, Reduction,
     Release, Rotation,
@@ -48,11 +50,16 @@ impl<S: Scalar> FunctionBuilder<'_, S> {
                     None | Some(Side::Below) => Bound::Below,
                     Some(Side::Above) => Bound::Above,
                 };
-                let reduction = Reduction::Ks { rho: ks.rho, bound };
+                let reduction = Reduction::Ks {
+                    rho: rho_of(ks.rho),
+                    bound,
+                };
                 self.reduced(&ks.of, ks.during.as_ref(), reduction)
             }
             OfMotion::InducedExponential(ie) => {
-                let reduction = Reduction::InducedExponential { rho: ie.rho };
+                let reduction = Reduction::InducedExponential {
+                    rho: rho_of(ie.rho),
+                };
                 self.reduced(&ie.of, ie.during.as_ref(), reduction)
             }
             OfMotion::Integral(over) => self.over(over, Reduction::Integral),
@@ -65,11 +72,22 @@ impl<S: Scalar> FunctionBuilder<'_, S> {
             }
             OfMotion::Value(value) => self.value_at(value),
             OfMotion::Clearance(clearance) => self.clearance(clearance),
+            OfMotion::Misfit(misfit) => Function::Misfit {
+                series: misfit.series.values().map(|own| self.series(own)).collect(),
+            },
             OfMotion::Duration => Function::Duration,
             OfMotion::Mass => Function::OfDesign {
                 unit: "kg",
                 value: self.mass,
             },
+        }
+    }
+
+    fn series(&self, own: &crate::schema::misfit::Series) -> Series<S> {
+        Series {
+            of: self.quantity(&own.of),
+            data: own.loaded.clone().unwrap_or_default(),
+            offset: own.offset.map_or(S::zero(), |offset| offset.get(self.x)),
         }
     }
 
@@ -202,7 +220,7 @@ impl<S: Scalar> FunctionBuilder<'_, S> {
             I::StrainEnergy(of) => Instant::StrainEnergy(self.flexible.index(self.body(&of.body))),
             I::VonMises(of) => {
                 let body = self.body(&of.body);
-                (self.flexible).shell_stress(body, of.elements.as_ref(), of.rho)
+                (self.flexible).shell_stress(body, of.elements.as_ref(), rho_of(of.rho))
             }
             I::SectionForce(of) => {
                 let station = station(self.document, self.assembly, &of.body, &of.station);
@@ -398,14 +416,15 @@ pub fn released<'a>(
     name: &str,
 ) -> Option<(&'a written::Range, Option<f64>)> {
     let (instant, during, rho) = match document.functions.get(name)?.of_motion()? {
-        OfMotion::Ks(ks) => (&ks.of, ks.during.as_ref(), Some(ks.rho)),
-        OfMotion::InducedExponential(own) => (&own.of, own.during.as_ref(), Some(own.rho)),
+        OfMotion::Ks(ks) => (&ks.of, ks.during.as_ref(), Some(rho_of(ks.rho))),
+        OfMotion::InducedExponential(own) => (&own.of, own.during.as_ref(), Some(rho_of(own.rho))),
         OfMotion::Final(over) => (over.of(), over.during(), None),
         OfMotion::Integral(_)
         | OfMotion::Mean(_)
         | OfMotion::MeanSquare(_)
         | OfMotion::MeanAbsolute(_)
         | OfMotion::Value(_)
+        | OfMotion::Misfit(_)
         | OfMotion::Clearance(_)
         | OfMotion::Duration
         | OfMotion::Mass => return None,

@@ -5,9 +5,37 @@ use super::finding::Finding;
 use super::pointer::{join, keys};
 use super::variables::Variable;
 use crate::functions::{Edge, Function, Scene};
+use crate::model::{DegreeOfFreedom, LoadKind};
 
 /// The unit of a value of a quantity in the schema.
 const OF_QUANTITY: &str = "that of the quantity";
+
+/// Between the units of a number of a slide and of a turn, in the schema.
+const OR: &str = " or ";
+
+/// Gives numbers of loads in joints the unit of the joint's motion.
+pub(super) fn name_units_of_joints(variables: &mut [Variable], scene: &Scene<f64>) {
+    for variable in variables {
+        let Some((slide, turn)) = variable.unit.split_once(OR) else {
+            continue;
+        };
+        let slides = variable.paths.iter().find_map(|path| {
+            let keys = keys(path);
+            let name = keys.get(1).filter(|_| keys[0] == "loads")?;
+            let load = scene.model.loads.iter().find(|load| load.name == *name)?;
+            match load.kind {
+                LoadKind::Damping { dof, .. } | LoadKind::Friction { dof, .. } => {
+                    Some(dof == DegreeOfFreedom::Translation)
+                }
+                LoadKind::BallDamping { .. } => Some(false),
+                _ => None,
+            }
+        });
+        if let Some(slides) = slides {
+            variable.unit = if slides { slide } else { turn }.to_owned();
+        }
+    }
+}
 
 /// Gives variables that are values of a quantity the unit of that quantity, also where a parameter gives the number.
 pub(super) fn name_units(variables: &mut [Variable], names: &[String], scene: &Scene<f64>) {

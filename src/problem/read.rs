@@ -1,5 +1,6 @@
 //! Reads the text of a problem file: a problem, or all of its faults.
 
+use super::aggregates;
 use super::check::check;
 use super::composing::{Composing, strip};
 use super::derived::{Derived, Expressions};
@@ -12,13 +13,14 @@ use super::first_scene::{
     collapsed, driven_twice, oblique, too_many, unassembled, unstarted, without_inertia,
 };
 use super::holds;
+use super::measurements;
 use super::modal;
 use super::overrides::Override;
 use super::placement::placement_order;
 use super::pointer::join;
 use super::points;
 use super::prune::prune;
-use super::quantity_units::{mismatched, name_units};
+use super::quantity_units::{mismatched, name_units, name_units_of_joints};
 use super::source::Source;
 use super::statics::expand::expand;
 use super::statics::per_thickness;
@@ -122,7 +124,9 @@ pub(super) fn parse(written: &str, file: &str, overrides: &[Override]) -> Result
     let content = match structure.findings.is_empty() {
         true => {
             let content = modal::load(&mut written, (file, &source))?;
-            content + &surfaces::load(&mut written, (file, &source))?
+            content
+                + &surfaces::load(&mut written, (file, &source))?
+                + &measurements::load(&mut written, (file, &source))?
         }
         false => String::new(),
     };
@@ -164,6 +168,7 @@ pub(super) fn parse(written: &str, file: &str, overrides: &[Override]) -> Result
             strip(&mut bound);
             modal::share(&written, &mut bound);
             surfaces::share(&written, &mut bound);
+            measurements::share(&written, &mut bound);
             elements::share(&written, &mut bound);
             let document = original.unwrap_or(document);
             let mut problem = problem(document, (bound, &content), order, variables, &composing);
@@ -172,6 +177,11 @@ pub(super) fn parse(written: &str, file: &str, overrides: &[Override]) -> Result
             let names = (&problem.function_names[..], first);
             let own = composing.composition(names, parameters.as_ref(), &problem.derived);
             problem.composition = Arc::new(own);
+            let finding = measurements::without_residuals(&problem);
+            let finding = finding.or_else(|| aggregates::without_rho(&problem.document));
+            if let Some(finding) = finding {
+                return faults(vec![finding]);
+            }
             if !problem.written.structures.is_empty() {
                 let done = of_structures(&mut problem);
                 return match done.and_then(|()| give_units(&mut problem, &composing, &source)) {
@@ -181,6 +191,7 @@ pub(super) fn parse(written: &str, file: &str, overrides: &[Override]) -> Result
             }
             let scene = problem.unlowered_scene(&problem.start());
             name_units(&mut problem.variables, &problem.function_names, &scene);
+            name_units_of_joints(&mut problem.variables, &scene);
             let mut model = scene.model;
             leave_out(&mut problem, &mut model);
             let finding = points::moved_meshes(&problem)
@@ -412,6 +423,7 @@ fn problem(
                 method: optimiser.method.map(|method| match method {
                     schema::OptimisationMethod::InteriorPoint => Method::InteriorPoint,
                     schema::OptimisationMethod::TrustRegion => Method::TrustRegion,
+                    schema::OptimisationMethod::LeastSquares => Method::LeastSquares,
                     schema::OptimisationMethod::Auto => Method::Auto,
                 }),
                 tolerance: optimiser.tolerance,

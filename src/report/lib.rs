@@ -26,6 +26,8 @@ mod error;
 pub mod evaluations;
 pub mod explain;
 pub mod files;
+pub mod fit;
+mod fit_text;
 pub mod history;
 mod history_log;
 pub mod mesh_precision;

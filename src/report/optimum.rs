@@ -2,6 +2,7 @@
 
 use super::ReportError;
 pub use super::certificate::*;
+use super::fit::Fit;
 use indexmap::IndexMap;
 use serde::{Deserialize, Serialize};
 
@@ -43,6 +44,9 @@ pub struct Optimum {
     /// Gradients against the complex step, unless skipped; older records have none.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub gradient_certificate: Option<GradientCertificate>,
+    /// What the numbers of a fit are worth, if the objective is a misfit.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub fit: Option<Fit>,
     /// How the motion was integrated at the end.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub integration: Option<Integration>,

@@ -1,6 +1,7 @@
 //! The text that a person reads at the end of an optimisation.
 
 use super::certificate;
+use super::fit_text;
 use super::number::{grouped, significant, with_space};
 use super::optimum::{
     Activity, Aggregate, BoundSide, Curvature, KktResiduals, Optimum, SecondOrder, Sense,
@@ -16,6 +17,10 @@ pub fn summary(optimum: &Optimum) -> String {
     text.push_str(&objective(optimum));
     text.push('\n');
     text.push_str(&design(optimum));
+    if let Some(fit) = &optimum.fit {
+        text.push('\n');
+        text.push_str(&fit_text::lines(fit, optimum));
+    }
     if !optimum.constraints.is_empty() {
         text.push('\n');
         text.push_str(&constraints(optimum));

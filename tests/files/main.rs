@@ -6,6 +6,7 @@ mod json;
 #[path = "../reference/mod.rs"]
 mod reference;
 
+mod aggregates;
 mod at_rest;
 mod axes_of_beams;
 mod beam_scenes;
@@ -23,6 +24,7 @@ mod equilibrium;
 mod expressions;
 mod faults;
 pub mod finite_elements;
+mod fits;
 mod fixed_steps;
 mod flexible_families;
 mod flexible_scenes;

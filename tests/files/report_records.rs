@@ -108,6 +108,7 @@ fn optimum() -> Optimum {
         scaling: Scaling::default(),
         second_order: None,
         gradient_certificate: None,
+        fit: None,
         integration: None,
         counts: Counts {
             iterations: 21,

@@ -264,7 +264,7 @@ fn two_hundred_variables_and_a_hundred_constraints_are_solved() {
             outcome.kkt
         );
         let most = match outcome.method {
-            Method::TrustRegion => 270,
+            Method::TrustRegion | Method::LeastSquares => 270,
             Method::InteriorPoint | Method::Auto => 170,
         };
         assert!(outcome.counts.evaluations <= most, "{:?}", outcome.counts);

@@ -39,7 +39,7 @@ fn allowed(name: &str, method: Method) -> Allowed {
     let found = ALLOWED.iter().find(|(problem, _, _)| *problem == name);
     let (_, interior, trust) = found.unwrap_or_else(|| panic!("{name} has no band"));
     match method {
-        Method::TrustRegion => *trust,
+        Method::TrustRegion | Method::LeastSquares => *trust,
         Method::InteriorPoint | Method::Auto => *interior,
     }
 }

@@ -12,6 +12,7 @@ mod gives_up;
 mod hard_cases;
 mod hock_schittkowski;
 mod large;
+mod least_squares;
 mod problems;
 mod restart;
 mod scales;

@@ -1,10 +1,10 @@
 //! Exact derivatives of functions of structures in the design variables.
 
-use super::{StaticDesign, StaticsFailure, of_cases, of_modes};
+use super::{StaticDesign, StaticsFailure, of_cases, of_modes, with_measured};
 use crate::composed;
 use crate::evaluate::Derivative;
 use crate::integrate::WorkCounts;
-use crate::problem::{Asked, Problem};
+use crate::problem::{Asked, MeasuredFunction, Problem};
 use crate::structures::functions::Function;
 use crate::structures::gradient::{By, Gradient, Solutions, gradients};
 use crate::structures::loads::Load;
@@ -20,7 +20,7 @@ impl StaticDesign {
         let mut workspace = self.shared();
         let (statics, structure) = (&self.statics, &self.scene.structure);
         let by_structure = match &statics.functions[f] {
-            Asked::DistanceFromStart | Asked::OfSolutions(_) => {
+            Asked::Misfit { .. } | Asked::DistanceFromStart | Asked::OfSolutions(_) => {
                 unreachable!("they are no functions of modes")
             }
             Asked::LowestFrequency(_) => {
@@ -60,6 +60,25 @@ impl StaticDesign {
         Ok(found.gradients)
     }
 
+    /// Derivatives of the mean square of residuals r = w (g − d), with those of the functions g.
+    fn by_numbers<'a>(
+        &self,
+        numbers: &[MeasuredFunction],
+        of: impl Fn(usize) -> &'a Vec<Derivative>,
+    ) -> Vec<Derivative> {
+        let mut all = vec![Derivative::default(); self.x.len()];
+        for own in numbers {
+            let by = 2.0 * own.weight / numbers.len() as f64;
+            let (r, size) = (self.residual(own), (own.value * own.weight).abs());
+            for (sum, d) in all.iter_mut().zip(of(own.function)) {
+                sum.value += by * r * d.value;
+                // The last digits of r are those of the value.
+                sum.terms += by * (r.abs() * d.terms + size * d.value.abs());
+            }
+        }
+        all
+    }
+
     /// Exact derivatives of the functions `which` in the design variables, and the work they took.
     ///
     /// # Errors
@@ -75,9 +94,8 @@ impl StaticDesign {
             false => By::Everything,
         };
         let mut counts = WorkCounts::default();
-        let mut distinct = self.composition.of_scene(which).into_owned();
-        distinct.sort_unstable();
-        distinct.dedup();
+        let asked = self.composition.of_scene(which);
+        let distinct = with_measured(&self.statics, &asked);
         let pulled_back = |by: &Gradient| -> Vec<Derivative> {
             let found = problem.pull_back(&self.statics, &moved, (&by.structure, &by.cases));
             let pairs = found.values.into_iter().zip(found.terms);
@@ -93,6 +111,7 @@ impl StaticDesign {
                     all.insert(f, distance_derivatives(problem, &self.x));
                 }
                 Asked::OfSolutions(function) => of_solutions.push((f, function)),
+                Asked::Misfit { .. } => {}
                 Asked::Frequency(_) | Asked::LowestFrequency(_) => {
                     all.insert(f, pulled_back(&self.by_structure(f)?));
                 }
@@ -103,6 +122,12 @@ impl StaticDesign {
             let found = self.by_solutions(&functions, by, &mut counts)?;
             let pairs = some.iter().zip(&found);
             all.extend(pairs.map(|(&(f, _), by)| (f, pulled_back(by))));
+        }
+        for &f in &distinct {
+            if let Asked::Misfit { numbers, .. } = &self.statics.functions[f] {
+                let found = self.by_numbers(numbers, |g| &all[&g]);
+                all.insert(f, found);
+            }
         }
         let one = |&f: &usize| match self.composition.gives(f) {
             true => composed::derivatives(&self.partials(f), &|g| &all[&g][..]),

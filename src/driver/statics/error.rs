@@ -190,6 +190,7 @@ fn gain(function: &Asked) -> f64 {
         Asked::OfSolutions(_)
         | Asked::Frequency(_)
         | Asked::LowestFrequency(_)
+        | Asked::Misfit { .. }
         | Asked::DistanceFromStart => 4.0 / 3.0,
     }
 }

@@ -1,10 +1,10 @@
 //! Functions of structures along a direction of the design, by the complex step.
 
-use super::{StaticDesign, StaticsFailure, cases_of, of_cases, of_modes};
+use super::{StaticDesign, StaticsFailure, cases_of, of_cases, of_modes, with_measured};
 use crate::math::scalar::COMPLEX_STEP;
 use crate::math::soft_max::SoftMax;
 use crate::math::{Complex64, Scalar};
-use crate::problem::{Asked, Problem, StaticScene};
+use crate::problem::{Asked, MeasuredFunction, Problem, StaticScene};
 use crate::structures::functions::Solved;
 use crate::structures::lifted::eigenvalue_rates;
 use crate::structures::modes::{ModalFailure, Modes};
@@ -28,7 +28,7 @@ pub(super) fn along(
     let scene: StaticScene<Complex64> = problem.static_scene(statics, &x);
     let real = &at.scene.structure;
     let mut own = at.copied_workspace()?;
-    let functions = at.composition.of_scene(which).into_owned();
+    let functions = with_measured(statics, &at.composition.of_scene(which));
     let mut needed: Vec<usize> = functions
         .iter()
         .flat_map(|&f| cases_of(&statics.functions[f]))
@@ -54,6 +54,12 @@ pub(super) fn along(
     let mut rates: BTreeMap<usize, f64> = BTreeMap::new();
     for f in functions {
         let value = match &statics.functions[f] {
+            Asked::Misfit { numbers, .. } => {
+                let rate = |own: &MeasuredFunction| {
+                    2.0 * at.residual(own) * own.weight * rates[&own.function]
+                };
+                numbers.iter().map(rate).sum::<f64>() / numbers.len() as f64
+            }
             Asked::DistanceFromStart => problem.distance_from_start(&x).infinitesimal(),
             Asked::OfSolutions(function) => {
                 let solved = Solved {

@@ -10,8 +10,10 @@ pub mod precision;
 
 use crate::composed;
 use crate::integrate::WorkCounts;
-use crate::math::soft_max::{Smoothed, smoothed};
-use crate::problem::{Asked, Composition, Partials, Problem, StaticScene, Statics, Workspace};
+use crate::math::soft_max::{self, Smoothed, smoothed, two_digits};
+use crate::problem::{
+    Asked, Composition, MeasuredFunction, Partials, Problem, StaticScene, Statics, Workspace,
+};
 use crate::structures::functions::{Function, Peak, Solved};
 use crate::structures::modes::{
     LowestFrequency, ModalFailure, ModalProblem, Modes, lowest_frequency, lowest_of,
@@ -22,6 +24,9 @@ use crate::structures::statics::{StaticFailure, StaticProblem};
 use crate::structures::structure::Structure;
 use crate::structures::von_karman::LoadSteps;
 use std::sync::{Arc, Mutex, MutexGuard, PoisonError};
+
+/// ρ times the lowest frequency: where two of them meet, the aggregate is less than 1 % below.
+const OF_FREQUENCY: f64 = 100.0;
 
 /// Why structures have no solution or no gradient at a design.
 #[derive(Clone, Debug, PartialEq, thiserror::Error)]
@@ -150,8 +155,29 @@ fn cases_of(function: &Asked) -> &[usize] {
             | Function::Displacement { case, .. } => std::slice::from_ref(case),
             Function::Stress { cases, .. } => cases,
         },
-        Asked::Frequency(_) | Asked::LowestFrequency(_) | Asked::DistanceFromStart => &[],
+        Asked::Frequency(_)
+        | Asked::LowestFrequency(_)
+        | Asked::Misfit { .. }
+        | Asked::DistanceFromStart => &[],
     }
+}
+
+/// Functions and those that they are of, each once, those first.
+fn with_measured(statics: &Statics, which: &[usize]) -> Vec<usize> {
+    let measured = which.iter().flat_map(|&f| match &statics.functions[f] {
+        Asked::Misfit { numbers, .. } => &numbers[..],
+        _ => &[],
+    });
+    let mut all: Vec<usize> = measured.map(|own| own.function).collect();
+    let is_misfit = |f: &usize| matches!(statics.functions[*f], Asked::Misfit { .. });
+    all.extend(which.iter().copied().filter(|f| !is_misfit(f)));
+    all.sort_unstable();
+    all.dedup();
+    let mut misfits: Vec<usize> = which.iter().copied().filter(is_misfit).collect();
+    misfits.sort_unstable();
+    misfits.dedup();
+    all.extend(misfits);
+    all
 }
 
 impl StaticDesign {
@@ -184,7 +210,7 @@ impl StaticDesign {
         }
         let all: Vec<usize> = (0..problem.function_names.len()).collect();
         let (asked_of, composition) = (asked.unwrap_or(&all), &problem.composition);
-        let which = &composition.of_scene(asked_of)[..];
+        let which = &with_measured(statics, &composition.of_scene(asked_of))[..];
         let needed = which.iter().flat_map(|&f| cases_of(&statics.functions[f]));
         let mut needed: Vec<usize> = match asked {
             Some(_) => needed.copied().collect(),
@@ -330,6 +356,10 @@ impl StaticDesign {
         let plain = |value| StaticValue { value, peak: None };
         Ok(match &self.statics.functions[f] {
             Asked::DistanceFromStart => plain(problem.distance_from_start(&self.x)),
+            Asked::Misfit { numbers, .. } => {
+                let square = |own: &MeasuredFunction| self.residual(own).powi(2);
+                plain(numbers.iter().map(square).sum::<f64>() / numbers.len() as f64)
+            }
             Asked::LowestFrequency(_) => {
                 let found = self.lowest[f].as_ref();
                 plain(found.expect("it was found before").value)
@@ -353,6 +383,14 @@ impl StaticDesign {
         })
     }
 
+    /// The distance of a requested function from its measured value, in standard deviations.
+    ///
+    /// # Panics
+    /// If the function was not requested.
+    pub fn residual(&self, own: &MeasuredFunction) -> f64 {
+        (self.function(own.function).value - own.value) * own.weight
+    }
+
     /// The value of a requested function.
     ///
     /// # Panics
@@ -374,6 +412,36 @@ impl StaticDesign {
         self.composition.partials(f, &self.x, &of)
     }
 
+    /// The value of a stress with another ρ.
+    fn stress(&self, function: &Function, sharpness: f64) -> f64 {
+        let mut other = function.clone();
+        if let Function::Stress { rho, .. } = &mut other {
+            *rho = sharpness;
+        }
+        let value = self.with_solved(|solved| solved.value(&other).ok());
+        value.flatten().unwrap_or(f64::NAN)
+    }
+
+    /// A ρ that keeps a requested aggregate within 1 % of what it stands for, and that value. The present ρ does not matter.
+    pub(super) fn near_rho(&self, f: usize) -> Option<(f64, f64)> {
+        match &self.statics.functions[f] {
+            Asked::LowestFrequency(_) => {
+                let frequencies = self.lowest[f].as_ref()?.modes.frequencies();
+                let lowest = *frequencies.first()?;
+                Some((two_digits(OF_FREQUENCY / lowest), lowest))
+            }
+            Asked::OfSolutions(function @ Function::Stress { .. }) => {
+                let largest = self.values[f]?.peak?.ratio;
+                let with = |rho: f64| self.stress(function, rho);
+                Some((soft_max::near((largest, largest), with)?, largest))
+            }
+            Asked::OfSolutions(_)
+            | Asked::Frequency(_)
+            | Asked::Misfit { .. }
+            | Asked::DistanceFromStart => None,
+        }
+    }
+
     /// What a requested function stands for, if it is an aggregate.
     pub fn smoothed(&self, f: usize) -> Option<Smoothed> {
         if self.composition.gives(f) {
@@ -391,17 +459,13 @@ impl StaticDesign {
             }
             Asked::OfSolutions(function @ Function::Stress { rho, .. }) => {
                 let largest = found.peak?.ratio;
-                let with = |factor: f64| {
-                    let mut sharper = function.clone();
-                    if let Function::Stress { rho, .. } = &mut sharper {
-                        *rho *= factor;
-                    }
-                    let value = self.with_solved(|solved| solved.value(&sharper).ok());
-                    value.flatten().unwrap_or(f64::NAN)
-                };
+                let with = |factor: f64| self.stress(function, rho * factor);
                 Some(smoothed(found.value, (largest, largest), vec![*rho], with))
             }
-            Asked::OfSolutions(_) | Asked::Frequency(_) | Asked::DistanceFromStart => None,
+            Asked::OfSolutions(_)
+            | Asked::Frequency(_)
+            | Asked::Misfit { .. }
+            | Asked::DistanceFromStart => None,
         }
     }
 }

@@ -80,6 +80,9 @@ pub const ZERO: f64 = 1e-6;
 /// Above this factor the samples decide which value is smoothed.
 const SHARPEST: f64 = 1e7;
 
+/// ρ times the size of the values of an aggregate that is far from its true value.
+const BLUNT: f64 = 3.0;
+
 /// What a smooth aggregate stands for.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Smoothed {
@@ -172,8 +175,20 @@ pub fn smoothed(
     }
 }
 
+/// The smallest ρ of two digits that keeps an aggregate within 1 % of its true value, relative to `scale`; `with` gives the
+/// aggregate with a ρ. `None` if there is none.
+pub fn near(of: (f64, f64), with: impl Fn(f64) -> f64) -> Option<f64> {
+    // The first is far from any but single values.
+    let first = BLUNT / of.1;
+    let found = smoothed(with(first), of, vec![first], |factor| with(first * factor));
+    match found.far {
+        Some(far) => far.rho?.first().copied(),
+        None => (first > 0.0 && first.is_finite()).then(|| two_digits(first)),
+    }
+}
+
 /// A number of two digits that is not below `x` > 0: half a unit of the second digit is at most 5 % of it.
-fn two_digits(x: f64) -> f64 {
+pub fn two_digits(x: f64) -> f64 {
     format!("{:.1e}", 1.05 * x).parse().unwrap_or(x)
 }
 

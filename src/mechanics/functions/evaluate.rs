@@ -3,6 +3,7 @@
 use super::flight::Flight;
 use super::function::{Function, Reduction, Release};
 use super::instant::{Instant, Projectile};
+use super::misfit;
 use super::peak::{self, Maximum, Point};
 use super::quantity::Quantity;
 use super::samples::{sample, sample_at, turn};
@@ -56,6 +57,11 @@ impl<S: SolveScalar> Function<S> {
                 maximum: None,
                 peak_sharpness: 0.0,
             },
+            Function::Misfit { series } => Evaluated {
+                value: misfit::mean_square(series, (model, run)),
+                maximum: None,
+                peak_sharpness: 0.0,
+            },
             Function::Duration => Evaluated {
                 value: run.time(run.last()),
                 maximum: None,
@@ -99,6 +105,9 @@ impl Function<Complex64> {
     /// Σ |w_k Im z_k| of a reduction with the weights w_k over the values z_k of a motion: the size of the terms
     /// whose sum is the imaginary part of the value. Zero for functions that are no such sum.
     pub fn terms_over_motion(&self, model: &Model<Complex64>, run: &Trajectory<Complex64>) -> f64 {
+        if let Function::Misfit { series } = self {
+            return misfit::terms(series, (model, run));
+        }
         let Function::Reduced {
             of,
             during,

@@ -2,6 +2,7 @@
 
 use super::instant::{Gate, Instant, Projectile};
 use super::quantity::Quantity;
+use super::series::Series;
 use super::window::{Edge, Window};
 use crate::math::soft_max::Bound;
 use crate::math::{Scalar, Vec3, parameters};
@@ -79,6 +80,11 @@ pub enum Function<S> {
         /// Height h_b of the barrier's top above the origin \[m\].
         top: S,
     },
+    /// Mean square of the distances of quantities from measured values, in their standard deviations.
+    Misfit {
+        /// The quantities and their values.
+        series: Vec<Series<S>>,
+    },
     /// Duration T of the run; with an event, its time \[s\].
     Duration,
     /// A number that depends only on the design.
@@ -93,6 +99,7 @@ pub enum Function<S> {
 parameters!(enum Function {
     Reduced { reduction; of, during },
     Clearance {; projectile, release, distance, top },
+    Misfit {; series },
     Duration,
     OfDesign { unit; value },
 });
@@ -130,6 +137,7 @@ impl<S: Scalar> Function<S> {
             } => of.integral_unit(),
             Function::Reduced { of, .. } => of.unit(),
             Function::Clearance { .. } => "m".to_owned(),
+            Function::Misfit { .. } => "1".to_owned(),
             Function::Duration => "s".to_owned(),
             Function::OfDesign { unit, .. } => (*unit).to_owned(),
         }
@@ -139,7 +147,10 @@ impl<S: Scalar> Function<S> {
     pub fn quantity(&self) -> Option<&Quantity<S>> {
         match self {
             Function::Reduced { of, .. } => Some(of),
-            Function::Clearance { .. } | Function::Duration | Function::OfDesign { .. } => None,
+            Function::Clearance { .. }
+            | Function::Misfit { .. }
+            | Function::Duration
+            | Function::OfDesign { .. } => None,
         }
     }
 
@@ -148,15 +159,23 @@ impl<S: Scalar> Function<S> {
         self.quantity().and_then(Quantity::instant)
     }
 
-    /// All quantities of an instant in what the function reduces and in the ends of its window.
+    /// All quantities of an instant in what the function reduces, in the ends of its window, and in its series.
     pub fn instants(&self) -> Vec<&Instant<S>> {
         let mut all = Vec::new();
-        if let Function::Reduced { of, during, .. } = self {
-            let edges = during.iter().flat_map(|own| [&own.from, &own.to]);
-            let edges = edges.filter_map(Edge::quantity);
-            for quantity in std::iter::once(of).chain(edges) {
-                quantity.for_each(&mut |instant| all.push(instant));
+        match self {
+            Function::Reduced { of, during, .. } => {
+                let edges = during.iter().flat_map(|own| [&own.from, &own.to]);
+                let edges = edges.filter_map(Edge::quantity);
+                for quantity in std::iter::once(of).chain(edges) {
+                    quantity.for_each(&mut |instant| all.push(instant));
+                }
             }
+            Function::Misfit { series } => {
+                for own in series {
+                    own.of.for_each(&mut |instant| all.push(instant));
+                }
+            }
+            Function::Clearance { .. } | Function::Duration | Function::OfDesign { .. } => {}
         }
         all
     }
@@ -164,27 +183,41 @@ impl<S: Scalar> Function<S> {
     /// The same, to be changed.
     pub fn instants_mut(&mut self) -> Vec<&mut Instant<S>> {
         let mut all = Vec::new();
-        if let Function::Reduced { of, during, .. } = self {
-            let edges = during.iter_mut();
-            let edges = edges.flat_map(|own| [&mut own.from, &mut own.to]);
-            let edges = edges.filter_map(Edge::quantity_mut);
-            for quantity in std::iter::once(of).chain(edges) {
-                quantity.for_each_mut(&mut |instant| all.push(instant));
+        match self {
+            Function::Reduced { of, during, .. } => {
+                let edges = during.iter_mut();
+                let edges = edges.flat_map(|own| [&mut own.from, &mut own.to]);
+                let edges = edges.filter_map(Edge::quantity_mut);
+                for quantity in std::iter::once(of).chain(edges) {
+                    quantity.for_each_mut(&mut |instant| all.push(instant));
+                }
             }
+            Function::Misfit { series } => {
+                for own in series {
+                    own.of.for_each_mut(&mut |instant| all.push(instant));
+                }
+            }
+            Function::Clearance { .. } | Function::Duration | Function::OfDesign { .. } => {}
         }
         all
     }
 
     /// One of them, by its number.
     pub(super) fn instant_mut(&mut self, which: usize) -> Option<&mut Instant<S>> {
-        let Function::Reduced { of, during, .. } = self else {
-            return None;
-        };
-        let edges = during.iter_mut();
-        let edges = edges.flat_map(|own| [&mut own.from, &mut own.to]);
-        let mut all = std::iter::once(of).chain(edges.filter_map(Edge::quantity_mut));
         let mut left = which;
-        all.find_map(|own| own.nth_mut(&mut left))
+        match self {
+            Function::Reduced { of, during, .. } => {
+                let edges = during.iter_mut();
+                let edges = edges.flat_map(|own| [&mut own.from, &mut own.to]);
+                let mut all = std::iter::once(of).chain(edges.filter_map(Edge::quantity_mut));
+                all.find_map(|own| own.nth_mut(&mut left))
+            }
+            Function::Misfit { series } => {
+                let mut all = series.iter_mut();
+                all.find_map(|own| own.of.nth_mut(&mut left))
+            }
+            Function::Clearance { .. } | Function::Duration | Function::OfDesign { .. } => None,
+        }
     }
 
     /// The components of reactions of joints that the function observes.
@@ -225,7 +258,7 @@ impl<S: Scalar> Function<S> {
     /// observes the rotation of the body.
     pub fn for_each_place(&mut self, visit: &mut impl FnMut(&mut usize, Option<&mut Vec3<S>>)) {
         match self {
-            Function::Reduced { .. } => {
+            Function::Reduced { .. } | Function::Misfit { .. } => {
                 for instant in self.instants_mut() {
                     instant.for_each_place(visit);
                 }

@@ -4,8 +4,10 @@ use super::evaluate::{mean_flight, release_weights, turning, without_negligible}
 use super::function::{Function, Reduction, Release};
 use super::instant::{Instant, Projectile};
 use super::measure::pull_flight;
+use super::misfit;
 use super::quantity::{Quantity, Sampled};
 use super::samples::turn;
+use super::series::Series;
 use super::snapshot::{Snapshot, SnapshotCotangent};
 use super::turning::turns;
 use super::window::{Edge, Window};
@@ -43,6 +45,8 @@ pub struct Linearised<'a> {
     by_barrier: [f64; 2],
     /// In the times or values that give the ends of the window.
     by_ends: [f64; 2],
+    /// In the offsets of the series of a misfit.
+    by_offsets: Vec<f64>,
 }
 
 /// Cotangents of a projectile's flight: `cot` times a weight at every instant.
@@ -70,6 +74,7 @@ impl<'a> Linearised<'a> {
             flight: None,
             by_barrier: [0.0; 2],
             by_ends: [0.0; 2],
+            by_offsets: Vec::new(),
         };
         match function {
             Function::Reduced {
@@ -143,6 +148,7 @@ impl<'a> Linearised<'a> {
                 }
                 Release::Best { .. } => this.at_best_release(projectile, *distance, model, run),
             },
+            Function::Misfit { series } => this.misfit(series, (model, run)),
             Function::Duration => this.by_duration = 1.0,
             Function::OfDesign { .. } => {}
         }
@@ -163,6 +169,7 @@ impl<'a> Linearised<'a> {
             flight: None,
             by_barrier: [0.0; 2],
             by_ends: [0.0; 2],
+            by_offsets: Vec::new(),
         };
         if let Some(of) = function.quantity() {
             this.weigh(of, (weights.to_vec(), None), (model, run));
@@ -218,6 +225,19 @@ impl<'a> Linearised<'a> {
                 }
                 self.weigh(&reach.of, (weights, None), (model, run));
             }
+        }
+    }
+
+    /// A mean square over data. Nothing, if it has no value.
+    fn misfit(&mut self, series: &[Series<f64>], at: (&Model<f64>, &Trajectory<f64>)) {
+        let part = 1.0 / misfit::count(series) as f64;
+        for own in series {
+            let Some(pulled) = own.pull(at, part) else {
+                return;
+            };
+            self.by_duration += pulled.by_duration;
+            self.by_offsets.push(pulled.by_offset);
+            self.weigh(&own.of, (pulled.by_values, None), at);
         }
     }
 
@@ -304,7 +324,7 @@ impl<'a> Linearised<'a> {
         };
         match own {
             Function::Duration | Function::OfDesign { .. } => {}
-            Function::Reduced { .. } => {
+            Function::Reduced { .. } | Function::Misfit { .. } => {
                 if let Some(own) = own.instant_mut(which) {
                     pull(own);
                 }
@@ -374,6 +394,11 @@ impl<'a> Linearised<'a> {
                         Edge::When(reach) => reach.value += by,
                         Edge::Start | Edge::End => {}
                     }
+                }
+            }
+            Function::Misfit { series } => {
+                for (own, by) in series.iter_mut().zip(&self.by_offsets) {
+                    own.offset += by;
                 }
             }
             Function::Reduced { .. } | Function::Duration => {}

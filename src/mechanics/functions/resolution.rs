@@ -35,6 +35,18 @@ struct Sum {
     soft: bool,
 }
 
+impl Sum {
+    /// The sum of two integrands.
+    fn with(self, other: Sum) -> Sum {
+        let add = |a: Vec<f64>, b: Vec<f64>| a.iter().zip(b).map(|(a, b)| a + b).collect();
+        Sum {
+            sizes: add(self.sizes, other.sizes),
+            terms: add(self.terms, other.terms),
+            soft: self.soft && other.soft,
+        }
+    }
+}
+
 /// The cells that the functions `which` need over a run whose samples are nodes of cells. The error
 /// of each sum is below `goal` relative to the sum of sizes, or round-off.
 pub fn resolution(
@@ -181,8 +193,26 @@ fn sum_of(
                 gate,
             } => (Quantity::Of(Instant::Range { projectile, gate }), Some(rho)),
         },
+        // Values at the times of data are those of polynomials, each quantity in its own size.
+        Function::Misfit { series } => {
+            let parts: Vec<Sum> = series
+                .iter()
+                .map(|own| sum_over(scene, (&own.of, None), (run, nodes), goal))
+                .collect();
+            return parts.into_iter().reduce(Sum::with);
+        }
         Function::Duration | Function::OfDesign { .. } => return None,
     };
+    Some(sum_over(scene, (&of, rho), (run, nodes), goal))
+}
+
+/// A quantity as an integrand, or its exponential.
+fn sum_over(
+    scene: &Scene<f64>,
+    (of, rho): (&Quantity<f64>, Option<f64>),
+    (run, nodes): (&Trajectory<f64>, &[usize]),
+    goal: f64,
+) -> Sum {
     let all = of.sample(&scene.model, run);
     let values: Vec<f64> = nodes.iter().map(|&k| all[k]).collect();
     let terms: Vec<f64> = match rho {
@@ -205,9 +235,9 @@ fn sum_of(
     };
     let total = total.max(least);
     let scale = if total > 0.0 { 1.0 / total } else { 0.0 };
-    Some(Sum {
+    Sum {
         sizes: terms.iter().map(|x| x.abs() * scale).collect(),
         terms: terms.iter().map(|x| x * scale).collect(),
         soft: rho.is_some(),
-    })
+    }
 }

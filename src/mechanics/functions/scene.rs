@@ -61,6 +61,7 @@ impl TerminalEvent<f64> {
         match &self.measure {
             Function::Reduced { of, .. } => of.describe(),
             Function::Clearance { .. } => "clearance".into(),
+            Function::Misfit { .. } => "misfit".into(),
             Function::Duration => "duration".into(),
             Function::OfDesign { .. } => "design".into(),
         }

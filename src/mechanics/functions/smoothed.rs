@@ -9,7 +9,7 @@ use super::quantity::Quantity;
 use super::samples::{sample_with, turn};
 use super::snapshot::Snapshot;
 use crate::integrate::Trajectory;
-use crate::math::soft_max::{Smoothed, ZERO, smoothed};
+use crate::math::soft_max::{self, Smoothed, ZERO, smoothed};
 use crate::model::Model;
 
 /// What a function of a run stands for; `None` if nothing in it is smoothed. `found` is its value.
@@ -23,7 +23,33 @@ pub fn of_motion(
     if rho.is_empty() {
         return None;
     }
-    let (value, scale) = match (found.maximum, function) {
+    let stands_for = stands_for(function, model, run, found)?;
+    let with = |factor: f64| sharpened(function, factor).evaluate(model, run).value;
+    Some(smoothed(found.value, stands_for, rho, with))
+}
+
+/// One ρ for all aggregates in a function that keeps it within 1 % of what it stands for; that value too. `None` if there is none.
+/// The present ρ, equal ones, do not matter.
+pub fn near(
+    function: &Function<f64>,
+    model: &Model<f64>,
+    run: &Trajectory<f64>,
+) -> Option<(f64, f64)> {
+    let own = *rhos(function).first()?;
+    let found = function.evaluate(model, run);
+    let (value, scale) = stands_for(function, model, run, &found)?;
+    let with = |rho: f64| sharpened(function, rho / own).evaluate(model, run).value;
+    Some((soft_max::near((value, scale), with)?, value))
+}
+
+/// What a function with aggregates stands for, and the size that differences are relative to.
+fn stands_for(
+    function: &Function<f64>,
+    model: &Model<f64>,
+    run: &Trajectory<f64>,
+    found: &Evaluated<f64>,
+) -> Option<(f64, f64)> {
+    let own = match (found.maximum, function) {
         (Some(Maximum { value, .. }), Function::Reduced { of, .. })
             if value.abs() < ZERO * found.value.abs() =>
         {
@@ -46,10 +72,11 @@ pub fn of_motion(
             (value, value.abs())
         }
         (None, Function::Reduced { .. }) => return None,
-        (None, Function::Duration | Function::OfDesign { .. }) => return None,
+        (None, Function::Misfit { .. } | Function::Duration | Function::OfDesign { .. }) => {
+            return None;
+        }
     };
-    let with = |factor: f64| sharpened(function, factor).evaluate(model, run).value;
-    Some(smoothed(found.value, (value, scale), rho, with))
+    Some(own)
 }
 
 /// The parameters ρ of a function: that over time, then that over points.
@@ -65,7 +92,7 @@ fn rhos(function: &Function<f64>) -> Vec<f64> {
             Release::Best { rho, .. } => (Some(*rho), None),
             Release::Final => (None, None),
         },
-        Function::Duration | Function::OfDesign { .. } => (None, None),
+        Function::Misfit { .. } | Function::Duration | Function::OfDesign { .. } => (None, None),
     };
     let over_points = instant.and_then(|instant| match instant {
         Instant::ShellStress { rho, .. } => Some(*rho),
@@ -94,7 +121,7 @@ fn sharpened(function: &Function<f64>, factor: f64) -> Function<f64> {
             Release::Best { rho, .. } => *rho *= factor,
             Release::Final => {}
         },
-        Function::Duration | Function::OfDesign { .. } => {}
+        Function::Misfit { .. } | Function::Duration | Function::OfDesign { .. } => {}
     }
     out
 }

@@ -43,7 +43,7 @@ struct Span<S> {
 
 /// The weighed sum of samples; weights have the sum one. It is summed relative to the first, so that the derivatives of
 /// the weights, whose sum is zero, do not cancel at the size of the values.
-fn reading<S: Scalar>(of: &[(usize, S)], values: &[S]) -> S {
+pub(super) fn reading<S: Scalar>(of: &[(usize, S)], values: &[S]) -> S {
     let first = values[of[0].0];
     of.iter().fold(first, |sum, &(k, weight)| {
         sum + (values[k] - first) * weight
@@ -51,11 +51,14 @@ fn reading<S: Scalar>(of: &[(usize, S)], values: &[S]) -> S {
 }
 
 /// The samples of the polynomial at the fraction `at`; of two parts that meet there, of the earlier.
-fn samples_at<T: Scalar>(run: &Trajectory<T>, at: f64) -> Vec<usize> {
-    let mut all = stretches(run);
+pub(super) fn samples_at<'a, T: Scalar>(
+    run: &Trajectory<T>,
+    all: &'a [Stretch],
+    at: f64,
+) -> &'a [usize] {
     let end = |own: &Stretch| run.instants[own.samples[own.part.end]];
     let which = all.partition_point(|own| end(own) < at);
-    all.swap_remove(which.min(all.len() - 1)).samples
+    &all[which.min(all.len() - 1)].samples
 }
 
 impl<S: Scalar> Span<S> {
@@ -110,8 +113,9 @@ impl<S: Scalar> Span<S> {
     /// Values in order of time between which the quantity rises or falls: at the ends of the window, and at
     /// samples and turning points inside. Each as a sum of samples.
     fn points<T: Scalar>(&self, run: &Trajectory<T>, values: &[S]) -> Vec<(f64, Point<S>)> {
+        let all = stretches(run);
         let edge = |end: S| {
-            let of = interpolation::value(run, &samples_at(run, end.re()), end);
+            let of = interpolation::value(run, samples_at(run, &all, end.re()), end);
             let point = Point {
                 value: reading(&of, values),
                 of: of.iter().map(|&(k, weight)| (k, weight.re())).collect(),
@@ -146,7 +150,7 @@ impl<S: Scalar> Span<S> {
         match reduction {
             Reduction::Final => {
                 let at = self.ends[1];
-                let of = interpolation::value(run, &samples_at(run, at.re()), at);
+                let of = interpolation::value(run, samples_at(run, &stretches(run), at.re()), at);
                 give(&of, 1.0);
                 reading(&of, values)
             }

@@ -168,7 +168,7 @@ fn looks_at<S: Scalar>(scene: &Scene<S>, function: &Function<S>) -> Vec<(usize, 
         }
     };
     match function {
-        Function::Reduced { .. } => {
+        Function::Reduced { .. } | Function::Misfit { .. } => {
             let all = function.instants().into_iter();
             all.flat_map(of_instant).collect()
         }

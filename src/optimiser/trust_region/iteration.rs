@@ -4,10 +4,11 @@
 //! for the penalties; Fletcher (1987), *Practical Methods of Optimization*, section 14.4, for the
 //! trust region and the second-order correction.
 
-use nalgebra::DVector;
+use nalgebra::{DMatrix, DVector};
 
-use crate::convergence::{LONGEST_DOMINANCE, dominant_row, is_solved, scaled_residual};
+use crate::convergence::{LONGEST_DOMINANCE, dominant_row, is_solved, kkt, scaled_residual};
 use crate::ending::infeasible;
+use crate::least_squares::model::SquaresModel;
 use crate::linear::quasi_newton::QuasiNewton;
 use crate::multipliers::ScaledMultipliers;
 use crate::observer::Phase;
@@ -50,7 +51,43 @@ impl TrustRegion {
             goal,
             penalty: DVector::from_element(m, 1.0),
             dominated: 0,
+            squares: None,
         }
+    }
+
+    /// Uses the residuals `r` and their derivatives `j` at the present point.
+    pub(crate) fn fit(&mut self, program: &Program<'_>, (r, j): (DVector<f64>, DMatrix<f64>)) {
+        let squares = SquaresModel::new(r, j);
+        self.radius = program.options.initial_radius * squares.first_radius(&self.point.x);
+        self.squares = Some(squares);
+    }
+
+    /// Length of a step in the units of the radius.
+    fn length(&self, d: &DVector<f64>) -> f64 {
+        match &self.squares {
+            Some(squares) => squares.length(d),
+            None => d.amax(),
+        }
+    }
+
+    /// Whether the residuals of a fit are orthogonal to all that the variables can change, to `tolerance` relative to
+    /// their size (Bates & Watts 1981), or where they vanish to that of the first ones. `model` foretells what is left
+    /// to gain. Gradients in the units of the user say less: their round-off is that of large residuals.
+    fn is_fitted(&self, program: &Program<'_>, model: &Model, tolerance: f64) -> bool {
+        let Some(squares) = &self.squares else {
+            return false;
+        };
+        let first = program.first.as_ref();
+        let first = first.map_or(0.0, |(_, f)| f * program.scaling.objective);
+        let (worth, f) = (tolerance.powi(2), self.point.f);
+        let nothing = f.abs() <= worth * worth * first.abs();
+        let z = self.multipliers(program);
+        let force = &self.slopes.g + self.slopes.a.tr_mul(&z.y) - &z.zl + &z.zu;
+        let gap = kkt(program, &self.point, &self.slopes, &z, 0.0).relative_complementarity;
+        program.is_feasible(&self.point.c)
+            && gap <= tolerance
+            && (nothing
+                || model.predicted <= worth * f.abs() && squares.is_orthogonal(&force, tolerance))
     }
 
     pub(crate) fn weight(&self) -> f64 {
@@ -81,6 +118,9 @@ impl TrustRegion {
                     return Ok(self.end(program, STATIONARY));
                 }
                 self.b.reset();
+                if let Some(squares) = &mut self.squares {
+                    squares.reset();
+                }
                 self.radius *= 0.1;
                 continue;
             };
@@ -90,10 +130,17 @@ impl TrustRegion {
             {
                 return Ok(ending);
             }
-            if let Some(ending) = self.ending(program) {
+            let ending = match &self.squares {
+                Some(_) => {
+                    let fitted = self.is_fitted(program, &model, program.options.tolerance);
+                    fitted.then_some(Status::Converged)
+                }
+                None => self.ending(program),
+            };
+            if let Some(ending) = ending {
                 return Ok(ending);
             }
-            let size = model.step.d.amax();
+            let size = self.length(&model.step.d);
             let stays = self.inside(program, &model.step.d) == self.point.x;
             let rounding = f64::EPSILON * self.merit(program, &self.point).abs().max(1e-8);
             lost = if model.predicted <= rounding {
@@ -101,11 +148,20 @@ impl TrustRegion {
             } else {
                 0
             };
+            // What is left to gain is below a thousandth of a standard deviation of every number.
+            let nearly = self.is_fitted(program, &model, program.options.tolerance.sqrt());
             if model.predicted <= 0.0 || stays || lost > LOST_STEPS || self.radius < tiny {
-                return Ok(self.end(program, STATIONARY));
+                return Ok(match nearly {
+                    true => Status::Converged,
+                    false => self.end(program, STATIONARY),
+                });
             }
             program.next_iteration()?;
             let (ratio, trials) = self.attempt(program, &model, refused)?;
+            // Noise of the functions hides it.
+            if nearly && ratio <= ACCEPT && ratio != f64::NEG_INFINITY {
+                return Ok(Status::Converged);
+            }
             let boundary = size >= 0.99 * self.radius;
             let radius = self.radius;
             if ratio < 0.25 {
@@ -151,7 +207,10 @@ impl TrustRegion {
             if ratio > ACCEPT && reached(program, &self.point) {
                 return Ok(Status::Converged);
             }
-            if let Some(ending) = self.ending(program) {
+            // A fit is judged by its next model.
+            if self.squares.is_none()
+                && let Some(ending) = self.ending(program)
+            {
                 return Ok(ending);
             }
         }
@@ -234,7 +293,7 @@ impl TrustRegion {
             return Ok((if accepted { first } else { f64::NEG_INFINITY }, 1));
         }
         let worse = program.total_violation(&trial.c) > 0.0;
-        if learn && !worse {
+        if learn && !worse && self.squares.is_none() {
             self.learn(program, &trial)?;
         }
         if !worse || self.goal == Goal::Feasibility {
@@ -292,6 +351,19 @@ impl TrustRegion {
         let force = |s: &Derivatives| &s.g * weight + s.a.tr_mul(&self.y);
         let change = force(&slopes) - force(&self.slopes);
         let s = &trial.x - &self.point.x;
+        if self.squares.is_some() {
+            let residuals = match program.residuals(&trial.x) {
+                Ok(Some(residuals)) => residuals,
+                Ok(None) | Err(EarlyExit::Failed(_)) => return Ok(false),
+                Err(halt) => return Err(halt),
+            };
+            let of_objective = &slopes.g - &self.slopes.g;
+            let of_rows = &change - &of_objective;
+            if let Some(squares) = &mut self.squares {
+                squares.judge(&self.slopes.g, &s, trial.f - self.point.f);
+                squares.advance(residuals, &s, (&of_objective, &of_rows));
+            }
+        }
         self.b.update(s, change);
         self.point = trial;
         self.slopes = slopes;

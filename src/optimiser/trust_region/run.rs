@@ -1,6 +1,6 @@
 //! A run of the trust region: phases without the objective, and its final iterate.
 
-use crate::ending::FinalIterate;
+use crate::ending::{FinalIterate, unfinished};
 use crate::multipliers::scaled_multipliers;
 use crate::options::Method;
 use crate::program::{Derivatives, Point, Program};
@@ -14,8 +14,12 @@ pub(crate) fn trust_region(
     point: Point,
     slopes: Derivatives,
     saved: Option<&SavedState>,
+    kind: Method,
 ) -> FinalIterate {
-    let mut method = TrustRegion::new(program, point, slopes, Goal::Optimum);
+    let mut method = match of_kind(program, (point, slopes), kind) {
+        Ok(method) => method,
+        Err(unable) => return *unable,
+    };
     if let Some(saved) = saved {
         method.y = scaled_multipliers(program, &saved.multipliers).y;
         if saved.quasi_newton.order() == method.b.order() {
@@ -23,14 +27,44 @@ pub(crate) fn trust_region(
         }
         method.radius = saved.radius;
     }
-    let finish = finish_trust_region(program, method);
-    renewed(program, finish, |program, (point, slopes)| {
-        let method = TrustRegion::new(program, point, slopes, Goal::Optimum);
-        finish_trust_region(program, method)
+    let finish = finish_trust_region(program, method, kind);
+    renewed(program, finish, |program, first| {
+        match of_kind(program, first, kind) {
+            Ok(method) => finish_trust_region(program, method, kind),
+            Err(unable) => *unable,
+        }
     })
 }
 
-fn finish_trust_region(program: &mut Program<'_>, mut method: TrustRegion) -> FinalIterate {
+/// The state of the method `kind` at a point, or why it cannot begin there.
+fn of_kind(
+    program: &mut Program<'_>,
+    (point, slopes): (Point, Derivatives),
+    kind: Method,
+) -> Result<TrustRegion, Box<FinalIterate>> {
+    if kind != Method::LeastSquares {
+        return Ok(TrustRegion::new(program, point, slopes, Goal::Optimum));
+    }
+    let status = match program.residuals(&point.x) {
+        Ok(Some(squares)) => {
+            let mut method = TrustRegion::new(program, point, slopes, Goal::Optimum);
+            method.fit(program, squares);
+            return Ok(method);
+        }
+        Ok(None) => Status::IllPosed {
+            what: "the objective has no residuals, which least squares need".into(),
+        },
+        Err(trouble) => trouble.into(),
+    };
+    let unable = unfinished(program, point, slopes);
+    Err(Box::new(unable.with_status(status)))
+}
+
+fn finish_trust_region(
+    program: &mut Program<'_>,
+    mut method: TrustRegion,
+    kind: Method,
+) -> FinalIterate {
     let optimise = |program: &mut Program<'_>, method: &mut TrustRegion| {
         let ending = method.iterate(program, |_, _| false);
         ending.unwrap_or_else(Status::from)
@@ -42,14 +76,17 @@ fn finish_trust_region(program: &mut Program<'_>, mut method: TrustRegion) -> Fi
         let mut phase = TrustRegion::new(program, point, slopes, Goal::Feasibility);
         let ending = phase.iterate(program, |program, p| program.is_feasible(&p.c));
         status = ending.unwrap_or_else(Status::from);
-        method = TrustRegion::new(program, phase.point, phase.slopes, Goal::Optimum);
+        method = match of_kind(program, (phase.point, phase.slopes), kind) {
+            Ok(method) => method,
+            Err(unable) => return *unable,
+        };
         if status == Status::Converged {
             status = optimise(program, &mut method);
         }
     }
-    FinalIterate {
+    let finish = FinalIterate {
         status,
-        method: Method::TrustRegion,
+        method: kind,
         multipliers: method.multipliers(program),
         scaled: method.optimality(program),
         units: program.units(),
@@ -58,6 +95,10 @@ fn finish_trust_region(program: &mut Program<'_>, mut method: TrustRegion) -> Fi
         b: method.b,
         barrier: program.options.first_barrier(),
         radius: method.radius,
+    };
+    // A fit has its own conditions.
+    match (kind, &finish.status) {
+        (Method::LeastSquares, Status::Converged) => finish,
+        _ => finish.judged(program),
     }
-    .judged(program)
 }

@@ -3,6 +3,8 @@
 
 use nalgebra::{DMatrix, DVector};
 
+use crate::least_squares::model::SquaresModel;
+use crate::least_squares::subproblem::Fitting;
 use crate::linear::quasi_newton::{QuasiNewton, Spectrum};
 use crate::program::{Derivatives, Point, Program};
 use crate::quadratic::data::{Hessian, QpData, QpStep};
@@ -31,6 +33,8 @@ pub(crate) struct TrustRegion {
     /// Multipliers of the rows from the last subproblem.
     pub y: DVector<f64>,
     pub b: QuasiNewton,
+    /// The model of a sum of squares, which takes the place of `b`.
+    pub(crate) squares: Option<SquaresModel>,
     pub radius: f64,
     pub(crate) goal: Goal,
     pub(crate) penalty: DVector<f64>,
@@ -85,7 +89,10 @@ impl TrustRegion {
             }
         }
         let d = &step.d;
-        let bd = self.b.multiply(d);
+        let bd = match &self.squares {
+            Some(squares) => squares.hessian() * d,
+            None => self.b.multiply(d),
+        };
         let violation: f64 = (0..c.len())
             .map(|k| {
                 let change =
@@ -120,6 +127,18 @@ impl TrustRegion {
         weight: f64,
         c: &DVector<f64>,
     ) -> Option<QpStep> {
+        if let Some(squares) = &self.squares {
+            let subproblem = Fitting {
+                squares,
+                slopes: &self.slopes,
+                x: &self.point.x,
+                c,
+                penalty: &self.penalty,
+                radius: self.radius,
+                of_rows_alone: weight != self.weight(),
+            };
+            return subproblem.solve(program, &mut self.qp);
+        }
         let keep = if self.goal == Goal::Feasibility {
             0.99
         } else {
@@ -150,8 +169,9 @@ impl TrustRegion {
                 values: DVector::zeros(0),
             }),
         };
+        let g = &self.slopes.g * weight;
         let data = QpData {
-            g: &(&self.slopes.g * weight),
+            g: &g,
             b: &b,
             a: &self.slopes.a,
             above: &(&program.row_upper - c),

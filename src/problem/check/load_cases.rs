@@ -5,6 +5,7 @@ use super::sets::Kind;
 use crate::finding::Finding;
 use crate::pointer::{advice, join};
 use crate::schema::functions::Function;
+use crate::schema::misfit::Misfit;
 use crate::schema::statics::{CaseLoad, Stress};
 use crate::schema::structures::{Material, Structure, Thickness};
 use std::collections::BTreeSet;
@@ -118,6 +119,7 @@ impl Checker<'_> {
                 let along = ("axis", &of.axis);
                 self.of_nodes(&at("reaction_moment"), &of.case, &of.nodes, along);
             }
+            Function::Misfit(misfit) => self.numbers(&at("misfit"), misfit),
             Function::VonMises(stress) => self.stress(&at("von_mises"), stress),
             Function::Frequency(_) | Function::LowestFrequency(_) => self.densities("a frequency"),
             // Their names are checked where they are read.
@@ -134,6 +136,27 @@ impl Checker<'_> {
             | Function::Duration => {
                 let expected = "a function of structures, such as \"mass\", or a \"simulation\"";
                 self.fault(Finding::new(pointer, "a function of a motion", expected));
+            }
+        }
+    }
+
+    /// Checks the measured values of functions of structures.
+    fn numbers(&mut self, pointer: &str, misfit: &Misfit) {
+        let place = join(pointer, "numbers");
+        if !misfit.series.is_empty() {
+            let expected = "\"numbers\", as structures do not move";
+            let finding = Finding::new(join(pointer, "series"), "series over time", expected);
+            self.fault(finding.of_key());
+        } else if misfit.numbers.is_empty() {
+            let expected = "at least one measured value of a function, under \"numbers\"";
+            self.fault(Finding::new(pointer, "none", expected));
+        }
+        for (k, own) in misfit.numbers.iter().enumerate() {
+            let place = join(&join(&place, k), "function");
+            self.function_name(&place, &own.function);
+            if let Some(Function::Misfit(_)) = self.document.functions.get(&own.function) {
+                let found = format!("the misfit \"{}\"", own.function);
+                self.fault(Finding::new(place, found, "a function that is no misfit"));
             }
         }
     }

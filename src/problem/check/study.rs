@@ -145,7 +145,7 @@ impl Checker<'_> {
         }
     }
 
-    fn function_name(&mut self, pointer: &str, name: &str) {
+    pub(super) fn function_name(&mut self, pointer: &str, name: &str) {
         let functions = &self.document.functions;
         if !functions.contains_key(name) && !self.damage.holds("functions", name) {
             let hint = advice(name, "functions", functions.keys().map(String::as_str));

@@ -34,6 +34,21 @@ impl Checker<'_> {
                 self.instant(&join(&pointer, "of"), &own.of);
                 self.edge(&join(&pointer, "at"), &own.at);
             }
+            OfMotion::Misfit(own) => {
+                if !own.numbers.is_empty() {
+                    let expected = "\"series\" over time, as a motion has";
+                    let finding = Finding::new(inner("misfit/numbers"), "numbers", expected);
+                    self.fault(finding.of_key());
+                }
+                let pointer = inner("misfit/series");
+                if own.series.is_empty() {
+                    let expected = "at least one series of measured values";
+                    self.fault(Finding::new(inner("misfit"), "none", expected));
+                }
+                for (name, series) in &own.series {
+                    self.instant(&join(&join(&pointer, name), "of"), &series.of);
+                }
+            }
             OfMotion::Clearance(_) | OfMotion::Duration | OfMotion::Mass => {}
         }
     }

@@ -1,6 +1,7 @@
 //! Quantities of flexible bodies for functions: displacements, section forces, stresses.
 
 use super::{Elastic, FlexibleBodies, Shells};
+use crate::aggregates::rho_of;
 use crate::functions::instant::DeformationKind;
 use crate::functions::stations::Largest;
 use crate::functions::{Bound, Instant};
@@ -155,7 +156,7 @@ impl<S: Scalar> Sections<'_, S> {
     /// The largest section force or moment of several sections.
     pub fn largest_force(&self, of: &LargestSectionForce, stations: &[S]) -> Instant<S> {
         let all = stations.iter().map(|&at| self.force(of.component, at));
-        largest(all, (of.sign, of.rho, of.bound))
+        largest(all, (of.sign, rho_of(of.rho), of.bound))
     }
 
     /// The largest stress of several sections and fibres.
@@ -164,7 +165,10 @@ impl<S: Scalar> Sections<'_, S> {
             let fibres = of.fibres.as_deref().unwrap_or(self.outer(station));
             fibres.iter().map(move |&fibre| self.stress(station, fibre))
         };
-        largest(stations.iter().flat_map(at), (of.sign, of.rho, of.bound))
+        largest(
+            stations.iter().flat_map(at),
+            (of.sign, rho_of(of.rho), of.bound),
+        )
     }
 }
 

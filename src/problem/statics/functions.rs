@@ -1,9 +1,11 @@
 //! Functions of the structures of a file.
 
 use super::mesh::of_file;
+use crate::aggregates::rho_of;
 use crate::math::Vec3;
 use crate::schema::Document;
 use crate::schema::functions::Function as Written;
+use crate::schema::misfit::{MeasuredNumber, Misfit, Variance};
 use crate::schema::statics::StressAggregate;
 use crate::structures::functions::{Aggregate, Function};
 
@@ -16,8 +18,26 @@ pub enum Asked {
     Frequency(usize),
     /// Smooth lower bound of all frequencies with this ρ \[Hz\].
     LowestFrequency(f64),
+    /// Mean square of the distances of other functions from measured values, in standard deviations.
+    Misfit {
+        /// The functions and their values.
+        numbers: Vec<MeasuredFunction>,
+        /// Whether the standard deviations are those of the data, and not only in proportion to them.
+        given: bool,
+    },
     /// Σ ((x − x0)/scale)² of the design.
     DistanceFromStart,
+}
+
+/// A measured value of a function.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct MeasuredFunction {
+    /// The function, by index.
+    pub function: usize,
+    /// The value, in the unit of the function.
+    pub value: f64,
+    /// One by its standard deviation.
+    pub weight: f64,
 }
 
 impl Asked {
@@ -34,7 +54,7 @@ impl Asked {
                 Function::Stress { .. } => "1",
             },
             Self::Frequency(_) | Self::LowestFrequency(_) => "Hz",
-            Self::DistanceFromStart => "1",
+            Self::Misfit { .. } | Self::DistanceFromStart => "1",
         }
     }
 }
@@ -94,12 +114,13 @@ fn of(document: &Document, function: &Written, cuts: usize) -> Asked {
             Function::Stress {
                 cases,
                 faces: stress.elements.clone().unwrap_or_else(|| "all".into()),
-                rho: stress.rho,
+                rho: rho_of(stress.rho),
                 aggregate,
             }
         }
         Written::Frequency(frequency) => return Asked::Frequency(frequency.mode - 1),
-        Written::LowestFrequency(lowest) => return Asked::LowestFrequency(lowest.rho),
+        Written::Misfit(misfit) => return of_numbers(document, misfit),
+        Written::LowestFrequency(lowest) => return Asked::LowestFrequency(rho_of(lowest.rho)),
         Written::Ks(_)
         | Written::InducedExponential(_)
         | Written::Integral(_)
@@ -116,4 +137,17 @@ fn of(document: &Document, function: &Written, cuts: usize) -> Asked {
             )
         }
     })
+}
+
+fn of_numbers(document: &Document, misfit: &Misfit) -> Asked {
+    let measured = |own: &MeasuredNumber| MeasuredFunction {
+        function: (document.functions.get_index_of(&own.function))
+            .expect("names are checked before"),
+        value: own.value,
+        weight: own.standard_deviation.map_or(1.0, |sd| 1.0 / sd),
+    };
+    Asked::Misfit {
+        numbers: misfit.numbers.iter().map(measured).collect(),
+        given: misfit.variance() == Variance::Given,
+    }
 }

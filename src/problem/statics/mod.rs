@@ -8,7 +8,7 @@ pub mod properties;
 mod pull_back;
 mod workspace;
 
-pub use functions::Asked;
+pub use functions::{Asked, MeasuredFunction};
 pub use pull_back::{Moved, PulledBack};
 pub use workspace::{Workspace, Workspaces};
 

@@ -3,20 +3,25 @@
 
 use crate::problems::dual::Dual;
 use crate::problems::problem::Problem;
+use crate::problems::squares::Squares;
 
 fn squares(
     name: &'static str,
     start: &[f64],
     best: f64,
     f: impl Fn(&[Dual]) -> Vec<Dual> + 'static,
-) -> Problem {
-    Problem::new(name, start, best, move |x| {
-        f(x).into_iter().map(|v| v.powi(2)).sum()
-    })
+) -> Squares {
+    Squares::new(name, start, best, f)
 }
 
-/// All of them.
+/// All of them, as sums alone.
 pub fn least_squares() -> Vec<Problem> {
+    let all = sums_of_squares().into_iter();
+    all.map(Squares::into_problem).collect()
+}
+
+/// All of them with their residuals.
+pub fn sums_of_squares() -> Vec<Squares> {
     let mut all = with_data();
     all.extend(badly_scaled());
     all.extend(of_any_size());
@@ -24,7 +29,7 @@ pub fn least_squares() -> Vec<Problem> {
     all
 }
 
-fn with_data() -> Vec<Problem> {
+fn with_data() -> Vec<Squares> {
     const BARD: [f64; 15] = [
         0.14, 0.18, 0.22, 0.25, 0.29, 0.32, 0.35, 0.39, 0.37, 0.58, 0.73, 0.96, 1.34, 2.10, 4.39,
     ];
@@ -85,7 +90,7 @@ fn with_data() -> Vec<Problem> {
     ]
 }
 
-fn badly_scaled() -> Vec<Problem> {
+fn badly_scaled() -> Vec<Squares> {
     vec![
         squares("BROWNBS", &[1.0, 1.0], 0.0, |x| {
             vec![x[0] - 1e6, x[1] - 2e-6, x[0] * x[1] - 2.0]
@@ -113,7 +118,7 @@ fn badly_scaled() -> Vec<Problem> {
     ]
 }
 
-fn of_any_size() -> Vec<Problem> {
+fn of_any_size() -> Vec<Squares> {
     const N: usize = 10;
     let h = 1.0 / (N as f64 + 1.0);
     let place = move |i: usize| (i as f64 + 1.0) * h;
@@ -166,7 +171,7 @@ fn of_any_size() -> Vec<Problem> {
 }
 
 /// Ten rows in five variables, of full rank and of rank one.
-fn linear() -> Vec<Problem> {
+fn linear() -> Vec<Squares> {
     vec![
         squares("ARGLINA", &[1.0; 5], 5.0, |x| {
             let sum: Dual = x.iter().copied().sum();

@@ -52,12 +52,14 @@ mod hs_061_086;
 mod hs_093_110;
 mod hs_111_119;
 pub mod least_squares;
+pub mod nist;
 pub mod problem;
 pub mod recorded;
 pub mod residuals;
 pub mod scaled;
 pub mod separable;
 pub mod sized_truss;
+pub mod squares;
 pub mod truss;
 
 use problem::Problem;

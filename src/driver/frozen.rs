@@ -1,0 +1,45 @@
+//! Complex runs of a design with the steps of its real one.
+
+use super::evaluate::Evaluated;
+use super::event;
+use super::integration::{Integration, KeptSteps};
+use crate::functions::Scene;
+use crate::integrate::{IntegrationFailure, Settings, Spacing, Trajectory, simulate};
+use crate::math::Complex64;
+use crate::math::scalar::COMPLEX_STEP;
+use crate::problem::Problem;
+
+/// The settings of a run, with its steps frozen.
+pub(super) fn settings(problem: &Problem, at: &Evaluated) -> Option<Settings> {
+    let mut integration = Integration::new(problem, &at.scene, None, true);
+    integration.restore(KeptSteps {
+        method: at.run.method,
+        reason: None,
+        grid: match problem.simulation.spacing {
+            Spacing::Steps(_) if !at.run.grid.is_equal() => None,
+            Spacing::Steps(_) | Spacing::Tolerance(_) | Spacing::Frozen(_) => {
+                Some(at.run.grid.clone())
+            }
+        },
+        refreshes: 0,
+    });
+    integration.chosen().map(|(settings, _)| settings.clone())
+}
+
+/// The scene and its motion at x + i h d; `event` is when the event comes at x, and how fast.
+pub(super) fn complex_motion(
+    problem: &Problem,
+    settings: &Settings,
+    event: (f64, f64),
+    x: &[f64],
+    direction: &[f64],
+) -> Result<(Scene<Complex64>, Trajectory<Complex64>), IntegrationFailure> {
+    let along = x.iter().zip(direction);
+    let x: Vec<Complex64> = along
+        .map(|(&x, d)| Complex64::new(x, COMPLEX_STEP * d))
+        .collect();
+    let scene = problem.scene(&x);
+    let duration = event::complex_duration(&scene, settings, event)?;
+    let run = simulate(&scene.model, duration, settings)?;
+    Ok((scene, run))
+}
