@@ -127,6 +127,10 @@ __all__ = [
     "Reach",
     "Over",
     "Within",
+    "Series",
+    "DataFile",
+    "MeasuredNumber",
+    "Variance",
     "Barrier",
     "StressAggregate",
     "StressPer",
@@ -192,6 +196,9 @@ __all__ = [
     "window_ends",
     "reach",
     "within",
+    "series",
+    "data_file",
+    "measured_number",
     "barrier",
     "expression_of_functions",
     "joint_defaults",
@@ -578,6 +585,24 @@ class Within(Part):
     __slots__ = ()
 
 
+class Series(Part):
+    """A quantity measured at several times. Give "table" or "file". Made by `series`."""
+
+    __slots__ = ()
+
+
+class DataFile(Part):
+    """A file of values separated by commas. Made by `data_file`."""
+
+    __slots__ = ()
+
+
+class MeasuredNumber(Part):
+    """A measured value of a function. Made by `measured_number`."""
+
+    __slots__ = ()
+
+
 class Barrier(Part):
     """A barrier across the direction of flight. Made by `barrier`."""
 
@@ -719,6 +744,9 @@ Edge: TypeAlias = Union[Real, Reach]
 Over: TypeAlias = Union[Within, Quantity]
 """A quantity, over the whole run or a window of time: the quantity alone, or with `during`."""
 
+Variance: TypeAlias = Literal["given", "estimated"]
+"""The scale of the covariance of fitted numbers."""
+
 StressAggregate: TypeAlias = Literal["ks", "induced_exponential"]
 """A smooth aggregate of stress ratios."""
 
@@ -728,7 +756,7 @@ StressPer: TypeAlias = Literal["thickness"]
 WhichFunction: TypeAlias = Union[str, ExpressionOfFunctions]
 """A function: its name, or an expression of functions."""
 
-OptimisationMethod: TypeAlias = Literal["interior_point", "trust_region", "auto"]
+OptimisationMethod: TypeAlias = Literal["interior_point", "trust_region", "least_squares", "auto"]
 """An optimisation algorithm."""
 
 View: TypeAlias = Literal["xy", "xz", "yz", "yx", "zx", "zy"]
@@ -763,8 +791,8 @@ def body(
         A homogeneous solid, centred at the origin of the body's axes; it gives the inertia.
     density : number above 0 [kg/m³], optional
         Density of the shape, instead of a mass.
-    mass : number above 0 [kg], optional
-        Mass.
+    mass : number at least 0 [kg], optional
+        Mass; zero of a link whose motion the other bodies determine.
     centre_of_mass : numbers, shape (3,) [m], optional
         Centre of mass of a body without a shape, from the origin of the body's axes; default 0.
     inertia : `inertia(…)`, optional
@@ -1599,6 +1627,81 @@ def within(*, of: Quantity, during: During | None = None) -> Within:
         `window_ends(…)`: Each end by itself.
     """
     return made(Within, "within", locals())
+
+
+@checked
+def series(
+    *,
+    of: Quantity,
+    table: Matrix | None = None,
+    file: DataFile | None = None,
+    standard_deviation: Real | None = None,
+    scale: Real | None = None,
+    offset: Real | None = None,
+) -> Series:
+    """A quantity measured at several times. Give "table" or "file".
+
+    Parameters
+    ----------
+    of : one of `quantities`
+        The quantity.
+    table : list of numbers, shape (n,), optional
+        Rows [time, value] or [time, value, standard deviation], in the order of time.
+    file : `data_file(…)`, optional
+        A file of values separated by commas, whose first line names its columns.
+    standard_deviation : number above 0 [that of the quantity], optional
+        Standard deviation of every value that has none of its own, in the unit of the quantity; default 1 of it.
+    scale : number, optional
+        What one unit of the values and standard deviations of table or file is in the SI unit of the quantity,
+        default 1: 0.017453292519943295 for degrees.
+    offset : number [s], optional
+        The datum of the time t belongs to the time t + offset of the motion, default 0.
+    """
+    return made(Series, "series", locals())
+
+
+@checked
+def data_file(
+    *,
+    path: str,
+    time: str | None = None,
+    value: str | None = None,
+    standard_deviation: str | None = None,
+    weight: str | None = None,
+) -> DataFile:
+    """A file of values separated by commas.
+
+    Parameters
+    ----------
+    path : text
+        Its path, relative to the directory of the problem file.
+    time : text, optional
+        Name of the column of the times, default "time".
+    value : text, optional
+        Name of the column of the values, default "value".
+    standard_deviation : text, optional
+        Name of a column of standard deviations; default "standard_deviation" if there is one.
+    weight : text, optional
+        Name of a column of weights: the squares of the residuals are multiplied by them; default "weight" if
+        there is one and no standard deviations.
+    """
+    return made(DataFile, "data_file", locals())
+
+
+@checked
+def measured_number(*, function: str, value: Real, standard_deviation: Real | None = None) -> MeasuredNumber:
+    """A measured value of a function.
+
+    Parameters
+    ----------
+    function : text
+        Name of the function.
+    value : number [that of the function]
+        The measured value.
+    standard_deviation : number above 0 [that of the function], optional
+        Its standard deviation, default 1 in the unit of the function.
+    """
+    return made(MeasuredNumber, "measured_number", locals())
 
 
 @checked
@@ -3544,14 +3647,14 @@ class quantities(Kinds):
 
     @staticmethod
     @checked
-    def von_mises(*, body: str, rho: Real, elements: str | None = None) -> Quantity:
+    def von_mises(*, body: str, rho: Real | None = None, elements: str | None = None) -> Quantity:
         """Von Mises stress by yield stress of a body of shells, aggregated over both faces of their Gauss points.
 
         Parameters
         ----------
         body : text
             The body.
-        rho : number above 0
+        rho : number above 0, optional
             Aggregation parameter over the points; larger is closer to the maximum.
         elements : text, optional
             Name of a set of elements of its structure, default all.
@@ -3647,9 +3750,9 @@ class quantities(Kinds):
         body: str,
         stations: SectionPlaces,
         component: SectionComponent,
-        rho: Real,
         beams: str | None = None,
         sign: Sign | None = None,
+        rho: Real | None = None,
         bound: Bound | None = None,
     ) -> Quantity:
         """Largest force [N] or moment [N m] of several sections of a beam, by a smooth maximum.
@@ -3671,9 +3774,6 @@ class quantities(Kinds):
             "torsion": Torsion moment.
             "bending_y": Bending moment about y.
             "bending_z": Bending moment about z.
-        rho : number above 0 [1/unit of the quantity]
-            Aggregation parameter over the sections; larger is closer to the largest. That of a `ks` over time, if it
-            shall be one function of both.
         beams : text, optional
             Of a body of elements: the name of a set of its beams, or of a stiffener; default all its beams.
         sign : "positive" or "negative" or "both", optional
@@ -3681,6 +3781,9 @@ class quantities(Kinds):
             "positive": The values.
             "negative": Their negatives.
             "both": Both, so the size counts.
+        rho : number above 0 [1/unit of the quantity], optional
+            Aggregation parameter over the sections; larger is closer to the largest. That of a `ks` over time, if it
+            shall be one function of both.
         bound : "below" or "above", optional
             "below" (default): never above the largest. "above": never below it.
             "below": Never above it.
@@ -3694,10 +3797,10 @@ class quantities(Kinds):
         *,
         body: str,
         stations: SectionPlaces,
-        rho: Real,
         beams: str | None = None,
         fibres: Matrix | None = None,
         sign: Sign | None = None,
+        rho: Real | None = None,
         bound: Bound | None = None,
     ) -> Quantity:
         """Largest stress of bending and stretch of several sections and fibres of a beam, by a smooth maximum [Pa].
@@ -3711,9 +3814,6 @@ class quantities(Kinds):
             distances.
             integer at least 0: So many at equal distances from start to end.
             list of text or number at least 0: These.
-        rho : number above 0 [1/Pa]
-            Aggregation parameter over sections and fibres; larger is closer to the largest. That of a `ks` over time,
-            if it shall be one function of both.
         beams : text, optional
             Of a body of elements: the name of a set of its beams, or of a stiffener; default all its beams.
         fibres : numbers, shape (n, 2), optional
@@ -3723,6 +3823,9 @@ class quantities(Kinds):
             "positive": The values.
             "negative": Their negatives.
             "both": Both, so the size counts.
+        rho : number above 0 [1/Pa], optional
+            Aggregation parameter over sections and fibres; larger is closer to the largest. That of a `ks` over time,
+            if it shall be one function of both.
         bound : "below" or "above", optional
             "below" (default): never above the largest. "above": never below it.
             "below": Never above it.
@@ -3905,15 +4008,21 @@ class functions(Kinds):
 
     @staticmethod
     @checked
-    def ks(*, rho: Real, of: Quantity, bound: Bound | None = None, during: During | None = None) -> Function:
+    def ks(
+        *,
+        of: Quantity,
+        rho: Real | None = None,
+        bound: Bound | None = None,
+        during: During | None = None,
+    ) -> Function:
         """Kreisselmeier–Steinhauser function, a smooth bound of the maximum over the run.
 
         Parameters
         ----------
-        rho : number above 0 [1/unit of the quantity]
-            Aggregation parameter in 1/unit of the quantity; larger is closer to the maximum.
         of : one of `quantities`
             The quantity.
+        rho : number above 0 [1/unit of the quantity], optional
+            Aggregation parameter in 1/unit of the quantity; larger is closer to the maximum.
         bound : "below" or "above", optional
             "below" (default): never above the true maximum. "above": never below it, as an upper limit needs.
             "below": Never above it.
@@ -3927,15 +4036,15 @@ class functions(Kinds):
 
     @staticmethod
     @checked
-    def induced_exponential(*, rho: Real, of: Quantity, during: During | None = None) -> Function:
+    def induced_exponential(*, of: Quantity, rho: Real | None = None, during: During | None = None) -> Function:
         """Induced exponential, a smooth mean near the maximum over the run.
 
         Parameters
         ----------
-        rho : number above 0 [1/unit of the quantity]
-            Aggregation parameter in 1/unit of the quantity; larger is closer to the maximum.
         of : one of `quantities`
             The quantity.
+        rho : number above 0 [1/unit of the quantity], optional
+            Aggregation parameter in 1/unit of the quantity; larger is closer to the maximum.
         during : numbers, shape (2,) [s] or `window_ends(…)`, optional
             The window of time, default the whole run.
             numbers, shape (2,) [s]: Start and end.
@@ -4019,6 +4128,27 @@ class functions(Kinds):
 
     @staticmethod
     @checked
+    def fatigue_damage(*, slope: Real, strength: Real, of: Quantity, during: During | None = None) -> Function:
+        """Damage by Basquin's law and the crossings of a stress about zero: one at the end of life.
+
+        Parameters
+        ----------
+        slope : number from 2 to 50
+            Slope m of Basquin's law N = (strength/amplitude)^m: about 3 for welds, 5 to 15 for machined steel.
+        strength : number above 0 [unit of the quantity]
+            Amplitude that one cycle endures: the fatigue strength coefficient, or the amplitude endured N times times
+            N^(1/m).
+        of : one of `quantities`
+            The stress, or another quantity whose cycles do damage.
+        during : numbers, shape (2,) [s] or `window_ends(…)`, optional
+            The window, default the whole run.
+            numbers, shape (2,) [s]: Start and end.
+            `window_ends(…)`: Each end by itself.
+        """
+        return made(Function, "functions.fatigue_damage", locals())
+
+    @staticmethod
+    @checked
     def value(*, at: Edge, of: Quantity) -> Function:
         """Value at a time, or where a quantity first reaches a value.
 
@@ -4032,6 +4162,30 @@ class functions(Kinds):
             The quantity.
         """
         return made(Function, "functions.value", locals())
+
+    @staticmethod
+    @checked
+    def misfit(
+        *,
+        series: Mapping[str, Series] | None = None,
+        numbers: Sequence[MeasuredNumber] | None = None,
+        variance: Variance | None = None,
+    ) -> Function:
+        """Mean square of the distances of quantities from measured values, each divided by its standard deviation.
+
+        Parameters
+        ----------
+        series : `series(…)` by name, optional
+            Of a motion: quantities measured at several times, by name.
+        numbers : list of `measured_number(…)`, optional
+            Of structures: measured values of other functions.
+        variance : "given" or "estimated", optional
+            Where the covariance of fitted numbers gets its scale from; default "given" if all data have standard
+            deviations, else "estimated".
+            "given": The standard deviations of the data are right.
+            "estimated": Only their ratios are: the size follows from the residuals.
+        """
+        return made(Function, "functions.misfit", locals())
 
     @staticmethod
     @checked
@@ -4152,7 +4306,7 @@ class functions(Kinds):
     @checked
     def von_mises(
         *,
-        rho: Real,
+        rho: Real | None = None,
         aggregate: StressAggregate | None = None,
         cases: Sequence[str] | None = None,
         elements: str | None = None,
@@ -4162,7 +4316,7 @@ class functions(Kinds):
 
         Parameters
         ----------
-        rho : number above 0
+        rho : number above 0, optional
             Aggregation parameter; larger is closer to the maximum.
         aggregate : "ks" or "induced_exponential", optional
             Which aggregate, default ks.
@@ -4193,12 +4347,12 @@ class functions(Kinds):
 
     @staticmethod
     @checked
-    def lowest_frequency(*, rho: Real) -> Function:
+    def lowest_frequency(*, rho: Real | None = None) -> Function:
         """Smooth lower bound of the natural frequencies [Hz].
 
         Parameters
         ----------
-        rho : number above 0 [s]
+        rho : number above 0 [s], optional
             Aggregation parameter; larger is closer to the lowest frequency.
         """
         return made(Function, "functions.lowest_frequency", locals())
@@ -4337,8 +4491,8 @@ class MachineKeys(Document):
             A homogeneous solid, centred at the origin of the body's axes; it gives the inertia.
         density : number above 0 [kg/m³], optional
             Density of the shape, instead of a mass.
-        mass : number above 0 [kg], optional
-            Mass.
+        mass : number at least 0 [kg], optional
+            Mass; zero of a link whose motion the other bodies determine.
         centre_of_mass : numbers, shape (3,) [m], optional
             Centre of mass of a body without a shape, from the origin of the body's axes; default 0.
         inertia : `inertia(…)`, optional
@@ -4729,10 +4883,12 @@ class MachineKeys(Document):
 
         Parameters
         ----------
-        method : "interior_point" or "trust_region" or "auto", optional
-            Algorithm, default interior point.
+        method : "interior_point" or "trust_region" or "least_squares" or "auto", optional
+            Algorithm, default interior point; least squares where the objective is a misfit to minimise.
             "interior_point": Primal-dual interior point with a filter line search.
             "trust_region": Trust-region sequential quadratic programming: fewest simulations for few variables.
+            "least_squares": Trust region on the residuals of a misfit, by Gauss and Newton. It is the default where
+                the objective is a misfit.
             "auto": Interior point; if it does not converge, trust region from its best point.
         tolerance : number above 0, optional
             The optimiser stops at this scaled residual of the optimality conditions.

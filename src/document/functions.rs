@@ -10,7 +10,7 @@ use super::statics::{
     CentreOfMass, Displacement, Frequency, LowestFrequency, MomentOfInertia, OfCase,
     ReactionMoment, StaticReaction, Stress,
 };
-use super::windows::{During, MeanAbsolute, Over, ValueAt};
+use super::windows::{During, FatigueDamage, MeanAbsolute, Over, ValueAt};
 use crate::quantity::Quantity;
 use schemars::JsonSchema;
 use serde::Deserialize;
@@ -33,6 +33,8 @@ pub enum Function {
     MeanSquare(Over),
     /// Smooth mean of the absolute value over the run, or over a window of time.
     MeanAbsolute(MeanAbsolute),
+    /// Damage by Basquin's law and the crossings of a stress about zero: one at the end of life.
+    FatigueDamage(FatigueDamage),
     /// Value at a time, or where a quantity first reaches a value.
     Value(ValueAt),
     /// Mean square of the distances of quantities from measured values, each divided by its standard deviation.
@@ -95,6 +97,7 @@ pub enum OfMotion<'a> {
     Mean(&'a Over),
     MeanSquare(&'a Over),
     MeanAbsolute(&'a MeanAbsolute),
+    FatigueDamage(&'a FatigueDamage),
     Value(&'a ValueAt),
     Misfit(&'a Misfit),
     Clearance(&'a Clearance),
@@ -121,6 +124,7 @@ impl Function {
             Self::Mean(own) => Some(OfMotion::Mean(own)),
             Self::MeanSquare(own) => Some(OfMotion::MeanSquare(own)),
             Self::MeanAbsolute(own) => Some(OfMotion::MeanAbsolute(own)),
+            Self::FatigueDamage(own) => Some(OfMotion::FatigueDamage(own)),
             Self::Value(own) => Some(OfMotion::Value(own)),
             Self::Misfit(own) => Some(OfMotion::Misfit(own)),
             Self::Clearance(own) => Some(OfMotion::Clearance(own)),

@@ -60,6 +60,31 @@ pub struct MeanAbsolute {
     pub during: Option<During>,
 }
 
+/// Damage of a stress over time.
+#[derive(Clone, Debug, Deserialize, JsonSchema)]
+#[serde(deny_unknown_fields)]
+pub struct FatigueDamage {
+    /// Slope m of Basquin's law N = (strength/amplitude)^m: about 3 for welds, 5 to 15 for machined steel.
+    #[schemars(extend(
+        "unit" = "1",
+        "minimum" = 2,
+        "maximum" = 50,
+        "design_variable" = "a slope says what is asked, not what is built"
+    ))]
+    pub slope: f64,
+    /// Amplitude that one cycle endures: the fatigue strength coefficient, or the amplitude endured N times times N^(1/m).
+    #[schemars(extend(
+        "unit" = "unit of the quantity",
+        "exclusiveMinimum" = 0,
+        "design_variable" = "a strength of a law says what is asked, not what is built"
+    ))]
+    pub strength: f64,
+    /// The stress, or another quantity whose cycles do damage.
+    pub of: Instant,
+    /// The window, default the whole run.
+    pub during: Option<During>,
+}
+
 /// A quantity at a time.
 #[derive(Clone, Debug, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]

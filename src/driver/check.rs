@@ -164,6 +164,8 @@ pub(super) fn own_size(at: &Evaluated, f: usize) -> f64 {
     };
     let size = match reduction {
         Reduction::Integral => size_of(at, of) * time,
+        // A sum of terms of one sign.
+        Reduction::Damage { .. } => 0.0,
         Reduction::Final
         | Reduction::Mean
         | Reduction::Ks { .. }

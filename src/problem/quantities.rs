@@ -70,6 +70,11 @@ impl<S: Scalar> FunctionBuilder<'_, S> {
                 let operation = Operation::Absolute { width: own.width };
                 self.mean_of(operation, &own.of, own.during.as_ref())
             }
+            OfMotion::FatigueDamage(own) => {
+                let (slope, strength) = (own.slope, own.strength);
+                let reduction = Reduction::Damage { slope, strength };
+                self.reduced(&own.of, own.during.as_ref(), reduction)
+            }
             OfMotion::Value(value) => self.value_at(value),
             OfMotion::Clearance(clearance) => self.clearance(clearance),
             OfMotion::Misfit(misfit) => Function::Misfit {
@@ -423,6 +428,7 @@ pub fn released<'a>(
         | OfMotion::Mean(_)
         | OfMotion::MeanSquare(_)
         | OfMotion::MeanAbsolute(_)
+        | OfMotion::FatigueDamage(_)
         | OfMotion::Value(_)
         | OfMotion::Misfit(_)
         | OfMotion::Clearance(_)

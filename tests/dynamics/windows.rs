@@ -140,6 +140,10 @@ fn functions(model: &Model<f64>, duration: f64, first: usize) -> Vec<Function<f6
             bound: Bound::Above,
         },
         Reduction::InducedExponential { rho },
+        Reduction::Damage {
+            slope: 3.3,
+            strength: 5.0,
+        },
     ];
     let count = all.len();
     let mut functions = Vec::new();

@@ -22,6 +22,7 @@ mod element_starts;
 mod element_steps;
 mod equilibrium;
 mod expressions;
+mod fatigue;
 mod faults;
 pub mod finite_elements;
 mod fits;

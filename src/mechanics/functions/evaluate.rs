@@ -134,7 +134,7 @@ impl Function<Complex64> {
             return sum(&|k| by.by_values[k], &values);
         }
         match *reduction {
-            Reduction::Final => 0.0,
+            Reduction::Final | Reduction::Damage { .. } => 0.0,
             Reduction::Integral | Reduction::Mean => {
                 let scale = match reduction {
                     Reduction::Mean => 1.0,
@@ -193,6 +193,7 @@ fn reduce<S: SolveScalar>(
         peak_sharpness: 0.0,
     };
     match reduction {
+        Reduction::Damage { .. } => reduce_during(of, &Window::whole(), reduction, (model, run)),
         Reduction::Final => {
             let last = run.last();
             plain(of.sample_in((model, run), last..=last)[0])
@@ -282,7 +283,11 @@ pub fn between_samples(
             bound: Bound::Below,
         }
         | Reduction::InducedExponential { rho } => rho,
-        Reduction::Ks { .. } | Reduction::Final | Reduction::Integral | Reduction::Mean => {
+        Reduction::Ks { .. }
+        | Reduction::Final
+        | Reduction::Integral
+        | Reduction::Mean
+        | Reduction::Damage { .. } => {
             return None;
         }
     };

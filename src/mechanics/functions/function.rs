@@ -33,6 +33,15 @@ pub enum Reduction {
         /// Aggregation parameter ρ, in 1/unit of g.
         rho: f64,
     },
+    /// Damage of crossings: D = ¼ ∫ |dF(g)| with F(g) = sign(g) |g/s|^m, the strength s and the slope m of Basquin's law
+    /// N = (s/a)^m. A cycle between −a and a adds 1/N (Palmgren & Miner). Of irregular histories about zero it is an upper
+    /// bound of the damage by rainflow counting (Rychlik 1993, *Fatigue Fract. Engng Mater. Struct.* 16, 377).
+    Damage {
+        /// Slope m.
+        slope: f64,
+        /// Amplitude s that one cycle endures, in the unit of g.
+        strength: f64,
+    },
 }
 
 /// Release of a projectile.
@@ -135,6 +144,10 @@ impl<S: Scalar> Function<S> {
                 reduction: Reduction::Integral,
                 ..
             } => of.integral_unit(),
+            Function::Reduced {
+                reduction: Reduction::Damage { .. },
+                ..
+            } => "1".to_owned(),
             Function::Reduced { of, .. } => of.unit(),
             Function::Clearance { .. } => "m".to_owned(),
             Function::Misfit { .. } => "1".to_owned(),

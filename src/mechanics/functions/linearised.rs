@@ -82,6 +82,11 @@ impl<'a> Linearised<'a> {
                 during: Some(window),
                 reduction,
             } => this.during(of, window, *reduction, (model, run)),
+            Function::Reduced {
+                of,
+                reduction: reduction @ Reduction::Damage { .. },
+                ..
+            } => this.during(of, &Window::whole(), *reduction, (model, run)),
             Function::Reduced { of, reduction, .. } => {
                 let instants = 0..=run.last();
                 // The value at the end is that of its own instant.
@@ -92,6 +97,7 @@ impl<'a> Linearised<'a> {
                 let values = sampled.as_ref().map_or(&[][..], |own| &own.values);
                 let weights = match *reduction {
                     Reduction::Final => instants.map(last).collect(),
+                    Reduction::Damage { .. } => unreachable!("it is one over a window"),
                     Reduction::Integral => {
                         this.by_duration =
                             instants.clone().map(|k| values[k] * run.moving[k]).sum();

@@ -180,7 +180,7 @@ fn sum_of(
         } => (of.clone(), None),
         Function::Reduced { of, reduction, .. } => match *reduction {
             Reduction::Final => return None,
-            Reduction::Integral | Reduction::Mean => (of.clone(), None),
+            Reduction::Integral | Reduction::Mean | Reduction::Damage { .. } => (of.clone(), None),
             Reduction::Ks { rho, .. } | Reduction::InducedExponential { rho } => {
                 (of.clone(), Some(rho))
             }

@@ -54,6 +54,7 @@ pub fn vanishing(
         Reduction::Final => run.last(),
         Reduction::Integral
         | Reduction::Mean
+        | Reduction::Damage { .. }
         | Reduction::Ks { .. }
         | Reduction::InducedExponential { .. } => 0,
     };
@@ -85,7 +86,7 @@ pub fn passes_rest(
     // The weight of an instant at rest relative to that of the largest speed.
     let counts = match reduction {
         Reduction::Final => false,
-        Reduction::Integral | Reduction::Mean => true,
+        Reduction::Integral | Reduction::Mean | Reduction::Damage { .. } => true,
         Reduction::Ks { rho, .. } | Reduction::InducedExponential { rho } => {
             (-rho * fastest).exp() > f64::EPSILON
         }

@@ -86,7 +86,9 @@ fn rhos(function: &Function<f64>) -> Vec<f64> {
             Reduction::Ks { rho, .. } | Reduction::InducedExponential { rho } => {
                 (Some(*rho), of.instant())
             }
-            Reduction::Final | Reduction::Integral | Reduction::Mean => (None, of.instant()),
+            Reduction::Final | Reduction::Integral | Reduction::Mean | Reduction::Damage { .. } => {
+                (None, of.instant())
+            }
         },
         Function::Clearance { release, .. } => match release {
             Release::Best { rho, .. } => (Some(*rho), None),
@@ -109,7 +111,10 @@ fn sharpened(function: &Function<f64>, factor: f64) -> Function<f64> {
         Function::Reduced { of, reduction, .. } => {
             match reduction {
                 Reduction::Ks { rho, .. } | Reduction::InducedExponential { rho } => *rho *= factor,
-                Reduction::Final | Reduction::Integral | Reduction::Mean => {}
+                Reduction::Final
+                | Reduction::Integral
+                | Reduction::Mean
+                | Reduction::Damage { .. } => {}
             }
             match of {
                 Quantity::Of(Instant::ShellStress { rho, .. }) => *rho *= factor,

@@ -60,6 +60,16 @@ pub(super) struct Placed<S> {
     pub by_duration: f64,
 }
 
+impl<S> Window<S> {
+    /// The whole motion.
+    pub fn whole() -> Self {
+        Self {
+            from: Edge::Start,
+            to: Edge::End,
+        }
+    }
+}
+
 impl<S: Scalar> Edge<S> {
     /// The quantity that reaches a value, if there is one.
     pub fn quantity(&self) -> Option<&Quantity<S>> {

@@ -154,6 +154,23 @@ impl<S: Scalar> Span<S> {
                 give(&of, 1.0);
                 reading(&of, values)
             }
+            Reduction::Damage { slope, strength } => {
+                let points = self.points(run, values);
+                let all: Vec<S> = points
+                    .iter()
+                    .map(|(_, point)| signed_power(point.value / strength, slope))
+                    .collect();
+                for (i, (_, point)) in points.iter().enumerate() {
+                    let turn = 0.5 * turns_between(&all, i);
+                    let steep = (point.value.re() / strength).abs().powf(slope - 1.0);
+                    let by = turn * slope * steep / strength;
+                    let of = point.of.iter().map(|&(k, w)| (k, S::from(w)));
+                    give(&of.collect::<Vec<_>>(), by);
+                }
+                let weigh =
+                    |sum, (i, &power): (usize, &S)| sum + power * (0.5 * turns_between(&all, i));
+                all.iter().enumerate().fold(S::zero(), weigh)
+            }
             Reduction::Integral | Reduction::Mean => {
                 let nodes = self.nodes(run, values, |_| 1.0);
                 let length = match reduction {
@@ -213,6 +230,26 @@ pub(super) fn turns_at<S: Scalar>(heights: &[S], i: usize) -> f64 {
     let before = sign(i == 0 || rises(i - 1));
     let after = sign(i + 1 != heights.len() && rises(i));
     0.5 * (before - after)
+}
+
+/// As [`turns_at`], and ±½ at the first and the last.
+fn turns_between<S: Scalar>(heights: &[S], i: usize) -> f64 {
+    let last = heights.len() - 1;
+    let change = |i: usize| match (heights[i + 1].re(), heights[i].re()) {
+        (after, before) if after == before => 0.0,
+        (after, before) => (after - before).signum(),
+    };
+    let before = if i == 0 { 0.0 } else { change(i - 1) };
+    let after = if i == last { 0.0 } else { change(i) };
+    0.5 * (before - after)
+}
+
+/// sign(x) |x|^m.
+fn signed_power<S: Scalar>(x: S, m: f64) -> S {
+    match x.re() {
+        0.0 => S::zero(),
+        re => ((x * re.signum()).ln() * m).exp() * re.signum(),
+    }
 }
 
 /// The reduction of a quantity with these values over the window with these ends.

@@ -131,6 +131,7 @@ impl Checker<'_> {
             | Function::Mean(_)
             | Function::MeanSquare(_)
             | Function::MeanAbsolute(_)
+            | Function::FatigueDamage(_)
             | Function::Value(_)
             | Function::Clearance(_)
             | Function::Duration => {

@@ -29,6 +29,9 @@ impl Checker<'_> {
             OfMotion::MeanAbsolute(own) => {
                 self.within(&inner("mean_absolute"), &own.of, own.during.as_ref());
             }
+            OfMotion::FatigueDamage(own) => {
+                self.within(&inner("fatigue_damage"), &own.of, own.during.as_ref());
+            }
             OfMotion::Value(own) => {
                 let pointer = inner("value");
                 self.instant(&join(&pointer, "of"), &own.of);

@@ -128,6 +128,7 @@ fn of(document: &Document, function: &Written, cuts: usize) -> Asked {
         | Written::Mean(_)
         | Written::MeanSquare(_)
         | Written::MeanAbsolute(_)
+        | Written::FatigueDamage(_)
         | Written::Value(_)
         | Written::Clearance(_)
         | Written::Duration
