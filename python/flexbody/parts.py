@@ -791,8 +791,8 @@ def body(
         A homogeneous solid, centred at the origin of the body's axes; it gives the inertia.
     density : number above 0 [kg/m³], optional
         Density of the shape, instead of a mass.
-    mass : number at least 0 [kg], optional
-        Mass; zero of a link whose motion the other bodies determine.
+    mass : number above 0 [kg], optional
+        Mass.
     centre_of_mass : numbers, shape (3,) [m], optional
         Centre of mass of a body without a shape, from the origin of the body's axes; default 0.
     inertia : `inertia(…)`, optional
@@ -4491,8 +4491,8 @@ class MachineKeys(Document):
             A homogeneous solid, centred at the origin of the body's axes; it gives the inertia.
         density : number above 0 [kg/m³], optional
             Density of the shape, instead of a mass.
-        mass : number at least 0 [kg], optional
-            Mass; zero of a link whose motion the other bodies determine.
+        mass : number above 0 [kg], optional
+            Mass.
         centre_of_mass : numbers, shape (3,) [m], optional
             Centre of mass of a body without a shape, from the origin of the body's axes; default 0.
         inertia : `inertia(…)`, optional
