@@ -60,19 +60,21 @@ pub fn read(
         return Ok(problem);
     }
     let with = |more: Vec<Override>| read(&[overrides, &more].concat());
-    let unknown = open.iter().filter(|own| own.given.is_none());
-    let unknown: Vec<&OpenAggregate> = unknown.collect();
-    let provisional = open.iter().flat_map(OpenAggregate::provisional);
-    let at = match unknown.first() {
-        Some(first) => Some(simulated(with(provisional.collect())?, &first.pointers[0])?),
-        None => None,
-    };
+    let provisional: Vec<Override> = open.iter().flat_map(OpenAggregate::provisional).collect();
+    let mut start = None;
     let mut all = Vec::new();
     for own in open {
-        let rho = match (&own.given, &at) {
-            (Some(rho), _) => rho.clone(),
-            (None, Some((provisional, at))) => Value::from(near(provisional, at, &own)?),
-            (None, None) => unreachable!("something was simulated for it"),
+        let rho = match &own.given {
+            Some(rho) => rho.clone(),
+            None => {
+                let (problem, at) = match start.take() {
+                    Some(known) => known,
+                    None => simulated(with(provisional.clone())?, &own.pointers[0])?,
+                };
+                let rho = near(&problem, &at, &own)?;
+                start = Some((problem, at));
+                Value::from(rho)
+            }
         };
         all.extend(own.overrides(&rho));
         chosen(&ChosenRho {

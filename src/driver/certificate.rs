@@ -11,7 +11,7 @@ use super::analysed::{AnalysisFailure, Simulated};
 use super::check::{complex_step, own_size};
 use super::evaluate::{Derivative, Evaluated};
 use super::event;
-use super::frozen::{complex_motion, settings};
+use super::frozen::{complex_design, complex_motion, settings};
 use super::not_finite::{body, variable};
 use super::optimise::Optimisation;
 use super::statics::{self, StaticDesign, StaticsFailure};
@@ -223,7 +223,7 @@ fn sums_of_terms(
     at: &Evaluated,
     direction: &[f64],
 ) -> Result<Vec<f64>, IntegrationFailure> {
-    let (scene, run) = complex_motion(problem, settings, event, &at.x, direction)?;
+    let (scene, run) = complex_motion(problem, settings, event, &complex_design(&at.x, direction))?;
     let terms = |f: &Function<Complex64>| f.terms_over_motion(&scene.model, &run) / COMPLEX_STEP;
     let mut all: Vec<f64> = scene.functions.iter().map(terms).collect();
     for f in all.len()..problem.function_names.len() {

@@ -3,7 +3,7 @@
 use super::composed::infinitesimal;
 use super::evaluate::Evaluated;
 use super::event;
-use super::frozen::complex_motion;
+use super::frozen::{complex_design, complex_motion};
 use super::integration::Integration;
 use crate::functions::seen::SeenPart;
 use crate::functions::series::Series;
@@ -300,11 +300,8 @@ pub(super) fn complex_step(
     x: &[f64],
     direction: &[f64],
 ) -> Result<ComplexStep, IntegrationFailure> {
-    let along = x.iter().zip(direction);
-    let moved: Vec<Complex64> = along
-        .map(|(&x, d)| Complex64::new(x, COMPLEX_STEP * d))
-        .collect();
-    let (scene, run) = complex_motion(problem, settings, event, x, direction)?;
+    let moved = complex_design(x, direction);
+    let (scene, run) = complex_motion(problem, settings, event, &moved)?;
     let value = |f: &Function<Complex64>| f.evaluate(&scene.model, &run).value;
     let values: Vec<Complex64> = scene.functions.iter().map(value).collect();
     Ok(ComplexStep {

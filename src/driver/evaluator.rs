@@ -353,24 +353,17 @@ impl Nlp for Evaluator<'_> {
         };
         let x = unscaled(problem, x);
         let found = match self.last.as_ref().filter(|last| last.x() == x) {
-            Some(last) => last
-                .residuals(problem, &misfits)
-                .map_err(|failure| failure.to_string()),
+            Some(last) => last.residuals(problem, &misfits),
             // The log knew values and gradients.
             None => {
                 let mut own = self.integration.clone();
-                let found = {
-                    let which: Vec<usize> = misfits.iter().map(|&(f, _)| f).collect();
-                    Analysed::with(&mut own, problem, &x, &which)
-                };
-                let found = found.map_err(|failure| failure.to_string());
-                found.and_then(|(at, _)| {
-                    at.residuals(problem, &misfits)
-                        .map_err(|failure| failure.to_string())
-                })
+                let which: Vec<usize> = misfits.iter().map(|&(f, _)| f).collect();
+                Analysed::with(&mut own, problem, &x, &which)
+                    .and_then(|(at, _)| at.residuals(problem, &misfits))
             }
         };
-        let Some(found) = found.map_err(|reason| self.failure(reason))? else {
+        let found = found.map_err(|failure| self.failure(failure.to_string()))?;
+        let Some(found) = found else {
             return Ok(None);
         };
         let rows = found.values.len();

@@ -3,9 +3,9 @@
 use super::analysed::{Analysed, AnalysisFailure, Simulated};
 use super::evaluate::{Derivative, Evaluated};
 use super::event;
-use super::frozen::{complex_motion, settings};
+use super::frozen::{complex_design, complex_motion, settings};
 use super::statics::{StaticDesign, StaticsFailure};
-use crate::functions::misfit::{complex_residuals, residuals};
+use crate::functions::misfit::residuals;
 use crate::functions::series::{Measured, Series};
 use crate::functions::{Function, Scene};
 use crate::integrate::IntegrationFailure;
@@ -97,10 +97,11 @@ pub fn of_motion(
         let unit = |j: usize| if i == j { 1.0 } else { 0.0 };
         let along: Vec<f64> = (0..n).map(unit).collect();
         let event = (at.run.duration, rate);
-        let (scene, run) = complex_motion(problem, &settings, event, &at.x, &along)?;
+        let (scene, run) =
+            complex_motion(problem, &settings, event, &complex_design(&at.x, &along))?;
         let slope = |r: Complex64| r.im / COMPLEX_STEP;
         let own = misfits.iter().map(|&(f, _)| {
-            let own = complex_residuals(series_of(&scene, f), &scene.model, &run)?;
+            let own = residuals(series_of(&scene, f), &scene.model, &run)?;
             Some(own.into_iter().map(slope).collect::<Vec<f64>>())
         });
         let own: Option<Vec<Vec<f64>>> = own.collect();

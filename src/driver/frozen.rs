@@ -26,19 +26,21 @@ pub(super) fn settings(problem: &Problem, at: &Evaluated) -> Option<Settings> {
     integration.chosen().map(|(settings, _)| settings.clone())
 }
 
-/// The scene and its motion at x + i h d; `event` is when the event comes at x, and how fast.
+/// The design x + i h d.
+pub(super) fn complex_design(x: &[f64], direction: &[f64]) -> Vec<Complex64> {
+    let along = x.iter().zip(direction);
+    let moved = |(&x, d): (&f64, &f64)| Complex64::new(x, COMPLEX_STEP * d);
+    along.map(moved).collect()
+}
+
+/// The scene and its motion at a complex design; `event` is when the event comes at its real part, and how fast.
 pub(super) fn complex_motion(
     problem: &Problem,
     settings: &Settings,
     event: (f64, f64),
-    x: &[f64],
-    direction: &[f64],
+    x: &[Complex64],
 ) -> Result<(Scene<Complex64>, Trajectory<Complex64>), IntegrationFailure> {
-    let along = x.iter().zip(direction);
-    let x: Vec<Complex64> = along
-        .map(|(&x, d)| Complex64::new(x, COMPLEX_STEP * d))
-        .collect();
-    let scene = problem.scene(&x);
+    let scene = problem.scene(x);
     let duration = event::complex_duration(&scene, settings, event)?;
     let run = simulate(&scene.model, duration, settings)?;
     Ok((scene, run))

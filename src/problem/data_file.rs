@@ -43,10 +43,18 @@ pub(super) struct DataFiles<'a> {
     /// The directory of the problem file.
     pub directory: &'a Path,
     /// The hashes of the files so far.
-    pub content: &'a mut String,
+    pub content: String,
 }
 
-impl DataFiles<'_> {
+impl<'a> DataFiles<'a> {
+    /// Of the problem in this file.
+    pub(super) fn beside(file: &'a str) -> Self {
+        Self {
+            directory: Path::new(file).parent().unwrap_or(Path::new("")),
+            content: String::new(),
+        }
+    }
+
     /// Reads the bytes of a file that the entry at `pointer` names.
     pub(super) fn bytes(&mut self, pointer: &str, file: &str) -> Result<Vec<u8>, Box<DataFault>> {
         let path = self.directory.join(file);

@@ -12,7 +12,6 @@ use crate::optimiser::Method;
 use crate::schema::Document;
 use crate::schema::functions::Function;
 use crate::schema::misfit::{DataFile, Series, Variance};
-use std::path::Path;
 use std::sync::Arc;
 
 /// Data beyond the end by less than this part of the duration are at the end.
@@ -27,8 +26,7 @@ pub(super) fn load(
     document: &mut Document,
     (file, source): (&str, &Source),
 ) -> Result<String, Faults> {
-    let directory = Path::new(file).parent().unwrap_or(Path::new(""));
-    let mut content = String::new();
+    let mut files = DataFiles::beside(file);
     let span = span(document);
     for (name, function) in &mut document.functions {
         let Function::Misfit(misfit) = function else {
@@ -36,10 +34,6 @@ pub(super) fn load(
         };
         let pointer = join(&join(&join("/functions", name), "misfit"), "series");
         for (name, series) in &mut misfit.series {
-            let mut files = DataFiles {
-                directory,
-                content: &mut content,
-            };
             let read = measured(&join(&pointer, name), name, series, (&mut files, span));
             let read = read.map_err(|fault| fault.located((file, source)))?;
             series.loaded = Some(Arc::new(read));
@@ -52,7 +46,7 @@ pub(super) fn load(
             }
         }
     }
-    Ok(content)
+    Ok(files.content)
 }
 
 /// Copies the data of all misfits to the same functions of `to`.

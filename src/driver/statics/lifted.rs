@@ -1,6 +1,7 @@
 //! Functions of structures along a direction of the design, by the complex step.
 
 use super::{StaticDesign, StaticsFailure, cases_of, of_cases, of_modes, with_measured};
+use crate::frozen::complex_design;
 use crate::math::scalar::COMPLEX_STEP;
 use crate::math::soft_max::SoftMax;
 use crate::math::{Complex64, Scalar};
@@ -20,10 +21,7 @@ pub(super) fn along(
     which: &[usize],
     direction: &[f64],
 ) -> Result<Vec<f64>, StaticsFailure> {
-    let pairs = at.x.iter().zip(direction);
-    let x: Vec<Complex64> = pairs
-        .map(|(&x, d)| Complex64::new(x, COMPLEX_STEP * d))
-        .collect();
+    let x = complex_design(&at.x, direction);
     let statics = &at.statics;
     let scene: StaticScene<Complex64> = problem.static_scene(statics, &x);
     let real = &at.scene.structure;

@@ -104,41 +104,25 @@ pub fn count<S>(series: &[Series<S>]) -> usize {
 /// The mean square Σ r_i² / N; NaN if a time is outside of the motion.
 pub(super) fn mean_square<S: SolveScalar>(
     series: &[Series<S>],
-    at: (&Model<S>, &Trajectory<S>),
+    (model, run): (&Model<S>, &Trajectory<S>),
 ) -> S {
-    let mut sum = S::zero();
-    for own in series {
-        match own.residuals_in(at) {
-            Some(all) => sum = all.into_iter().fold(sum, |sum, r| sum + r * r),
-            None => return S::from(f64::NAN),
+    match residuals(series, model, run) {
+        Some(all) => {
+            let squares = all.into_iter().fold(S::zero(), |sum, r| sum + r * r);
+            squares / count(series) as f64
         }
+        None => S::from(f64::NAN),
     }
-    sum / count(series) as f64
 }
 
 /// Residuals of all series; `None` if a time is outside of the motion.
-pub fn residuals(
-    series: &[Series<f64>],
-    model: &Model<f64>,
-    run: &Trajectory<f64>,
-) -> Option<Vec<f64>> {
-    let all: Option<Vec<Vec<f64>>> = series
-        .iter()
-        .map(|own| own.residuals_in((model, run)))
-        .collect();
-    Some(all?.concat())
-}
-
-/// The same of a complex step.
-pub fn complex_residuals(
-    series: &[Series<Complex64>],
-    model: &Model<Complex64>,
-    run: &Trajectory<Complex64>,
-) -> Option<Vec<Complex64>> {
-    let all: Option<Vec<Vec<Complex64>>> = series
-        .iter()
-        .map(|own| own.residuals_in((model, run)))
-        .collect();
+pub fn residuals<S: SolveScalar>(
+    series: &[Series<S>],
+    model: &Model<S>,
+    run: &Trajectory<S>,
+) -> Option<Vec<S>> {
+    let own = series.iter().map(|own| own.residuals_in((model, run)));
+    let all: Option<Vec<Vec<S>>> = own.collect();
     Some(all?.concat())
 }
 

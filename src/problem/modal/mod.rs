@@ -26,7 +26,6 @@ use crate::structures::modal::interfaces::{Holding, Interface, NoReduction};
 use crate::structures::modal::loaded::{Loaded, Reduced};
 use crate::structures::modal::written::WrittenMatrix;
 use nodes::NodeTable;
-use std::path::Path;
 use std::sync::Arc;
 
 /// Fixed-interface modes where a file gives no number.
@@ -41,22 +40,17 @@ pub(super) fn load(
     document: &mut Document,
     (file, source): (&str, &Source),
 ) -> Result<String, Faults> {
-    let directory = Path::new(file).parent().unwrap_or(Path::new(""));
-    let mut content = String::new();
+    let mut reader = Reader(DataFiles::beside(file));
     for (name, body) in &mut document.bodies {
         let Some(modal) = &mut body.modal else {
             continue;
         };
         let pointer = join(&join("/bodies", name), "modal");
-        let mut reader = Reader(DataFiles {
-            directory,
-            content: &mut content,
-        });
         let loaded = reader.body(&pointer, modal);
         let loaded = loaded.map_err(|fault| fault.located((file, source)))?;
         modal.loaded = loaded.map(Arc::new);
     }
-    Ok(content)
+    Ok(reader.0.content)
 }
 
 /// Copies the data of the files to the same bodies of `to`.

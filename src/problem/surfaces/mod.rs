@@ -10,7 +10,6 @@ use super::pointer::join;
 use super::source::Source;
 use crate::schema::Document;
 use crate::schema::mechanics::{Solid, Surface};
-use std::path::Path;
 use std::sync::Arc;
 
 /// Reads the surfaces of all bodies of a document in this directory. Returns their content as a text for the hash
@@ -22,22 +21,17 @@ pub(super) fn load(
     document: &mut Document,
     (file, source): (&str, &Source),
 ) -> Result<String, Faults> {
-    let directory = Path::new(file).parent().unwrap_or(Path::new(""));
-    let mut content = String::new();
+    let mut files = DataFiles::beside(file);
     for (name, body) in &mut document.bodies {
         let Some(surface) = &mut body.mass_properties else {
             continue;
         };
         let pointer = join(&join(&join("/bodies", name), "mass_properties"), "stl");
-        let mut files = DataFiles {
-            directory,
-            content: &mut content,
-        };
         let solid = read(&mut files, &pointer, surface);
         let solid = solid.map_err(|fault| fault.located((file, source)))?;
         surface.solid = Some(Arc::new(solid));
     }
-    Ok(content)
+    Ok(files.content)
 }
 
 /// Copies the data of the files to the same bodies of `to`.
