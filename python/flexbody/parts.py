@@ -791,12 +791,12 @@ def body(
         A homogeneous solid, centred at the origin of the body's axes; it gives the inertia.
     density : number above 0 [kg/m³], optional
         Density of the shape, instead of a mass.
-    mass : number above 0 [kg], optional
-        Mass.
+    mass : number at least 0 [kg], optional
+        Mass. A body of mass 0 needs joints that, with the inertia of other bodies, determine its motion.
     centre_of_mass : numbers, shape (3,) [m], optional
         Centre of mass of a body without a shape, from the origin of the body's axes; default 0.
     inertia : `inertia(…)`, optional
-        Inertia of a body without a shape.
+        Inertia of a body without a shape; 0 by default if its mass is 0.
     beam : `beam(…)`, optional
         A beam with elastic coordinates, instead of all above.
     elements : `elements(…)`, optional
@@ -4491,12 +4491,12 @@ class MachineKeys(Document):
             A homogeneous solid, centred at the origin of the body's axes; it gives the inertia.
         density : number above 0 [kg/m³], optional
             Density of the shape, instead of a mass.
-        mass : number above 0 [kg], optional
-            Mass.
+        mass : number at least 0 [kg], optional
+            Mass. A body of mass 0 needs joints that, with the inertia of other bodies, determine its motion.
         centre_of_mass : numbers, shape (3,) [m], optional
             Centre of mass of a body without a shape, from the origin of the body's axes; default 0.
         inertia : `inertia(…)`, optional
-            Inertia of a body without a shape.
+            Inertia of a body without a shape; 0 by default if its mass is 0.
         beam : `beam(…)`, optional
             A beam with elastic coordinates, instead of all above.
         elements : `elements(…)`, optional

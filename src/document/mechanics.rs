@@ -23,13 +23,13 @@ pub struct Body {
     /// Density of the shape, instead of a mass.
     #[schemars(extend("unit" = "kg/m³", "exclusiveMinimum" = 0))]
     pub density: Option<Quantity>,
-    /// Mass.
-    #[schemars(extend("unit" = "kg", "exclusiveMinimum" = 0))]
+    /// Mass. A body of mass 0 needs joints that, with the inertia of other bodies, determine its motion.
+    #[schemars(extend("unit" = "kg", "minimum" = 0, "designed" = "positive"))]
     pub mass: Option<Quantity>,
     /// Centre of mass of a body without a shape, from the origin of the body's axes; default 0.
     #[schemars(extend("unit" = "m"))]
     pub centre_of_mass: Option<Vector>,
-    /// Inertia of a body without a shape.
+    /// Inertia of a body without a shape; 0 by default if its mass is 0.
     pub inertia: Option<Inertia>,
     /// A beam with elastic coordinates, instead of all above.
     pub beam: Option<Box<Beam>>,

@@ -7,7 +7,8 @@
 
 use super::expression::{Expression, MARK, is_name, reserved};
 use super::finding::{Finding, Part};
-use super::pointer::{advice, join, keys};
+use super::parameter_units::{claims, give};
+use super::pointer::{advice, join, keys, of_parameter};
 use super::source::Source;
 use super::structure::Structure;
 use super::variables::Variable;
@@ -55,11 +56,6 @@ enum Operand {
     Fixed(f64),
     /// A place in the design and what follows from it.
     Place(usize),
-}
-
-/// Pointer to a parameter.
-fn of_parameter(name: &str) -> String {
-    join("/parameters", name)
 }
 
 /// The parameter at a pointer.
@@ -223,7 +219,7 @@ impl Expressions {
             .flat_map(|own| own.expression.names())
             .filter_map(|name| Some((name.clone(), values(name)?)))
             .collect();
-        let mut findings = Vec::new();
+        let (mut findings, mut units) = (Vec::new(), Vec::new());
         for (pointer, Written { expression, value }) in &self.list {
             if !(expression.names().iter()).any(|name| places.contains_key(*name)) {
                 continue;
@@ -240,7 +236,11 @@ impl Expressions {
                 continue;
             }
             if let Some(number) = number.filter(|own| own.unit != OF_PARAMETERS) {
-                share_unit(expression, (&number.unit, &values, &self.list), variables);
+                let given = |name: &String| {
+                    let own = self.list.get(&of_parameter(name))?;
+                    Some(&own.expression)
+                };
+                units.extend(claims(expression, &number.unit, &values, &given));
             }
             let place = derived.variables + derived.list.len();
             let of = |name: &String| match places.get(name) {
@@ -272,6 +272,7 @@ impl Expressions {
         }
         derived.places = places;
         findings.extend(derived.beyond_limits(variables, structure));
+        give(&units, variables);
         // What is not known is not told.
         for variable in variables.iter_mut().filter(|own| own.unit == OF_PARAMETERS) {
             variable.unit.clear();
@@ -280,55 +281,6 @@ impl Expressions {
             true => Ok(derived),
             false => Err(findings),
         }
-    }
-}
-
-/// The value of an expression if each parameter that no expression gives is `x`.
-fn all_at(expression: &Expression<String>, list: &IndexMap<String, Written>, x: f64) -> f64 {
-    expression.value(&|name: &String| match list.get(&of_parameter(name)) {
-        Some(own) => all_at(&own.expression, list, x),
-        None => x,
-    })
-}
-
-/// The parameters that no expression gives and that an expression follows from.
-fn bases<'a>(
-    expression: &'a Expression<String>,
-    list: &'a IndexMap<String, Written>,
-) -> Vec<&'a String> {
-    let names = expression.names().into_iter();
-    let all = names.flat_map(|name| match list.get(&of_parameter(name)) {
-        Some(own) => bases(&own.expression, list),
-        None => vec![name],
-    });
-    all.collect()
-}
-
-/// Gives the unit of a number to the variable of the only parameter that its expression follows from, if it is
-/// proportional to it.
-fn share_unit(
-    expression: &Expression<String>,
-    (unit, values, list): (&str, &IndexMap<String, f64>, &IndexMap<String, Written>),
-    variables: &mut [Variable],
-) {
-    let names = bases(expression, list);
-    let [name, others @ ..] = &names[..] else {
-        return;
-    };
-    // At values of its size, also if it is zero in the file.
-    let size = values[*name].abs().max(1.0);
-    let at = |x: f64| all_at(expression, list, x * size) / (x * size);
-    let ratio = at(1.0);
-    let proportional = [0.6, 1.7]
-        .iter()
-        .all(|x| (at(*x) - ratio).abs() <= 1e-12 * ratio.abs());
-    if others.iter().any(|other| other != name) || !proportional || !ratio.is_normal() {
-        return;
-    }
-    let path = of_parameter(name);
-    let own = variables.iter_mut().filter(|own| own.paths.contains(&path));
-    for variable in own.filter(|own| own.unit == OF_PARAMETERS) {
-        unit.clone_into(&mut variable.unit);
     }
 }
 

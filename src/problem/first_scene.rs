@@ -151,14 +151,14 @@ pub(super) fn unassembled(problem: &Problem) -> Option<Finding> {
     let numbering = Numbering::new(&model);
     let failure = initial::consistent(&model, &numbering).err()?;
     // Round-off in place of an inertia spoils the assembly, too.
-    let spins = rank::spinning_without_inertia(&model);
-    Some(cannot_assemble(&spins.unwrap_or(failure)))
+    let loose = rank::moving_without_inertia(&model);
+    Some(cannot_assemble(&loose.unwrap_or(failure)))
 }
 
-/// The fault of thin bodies that spin without inertia in the lowered scene.
+/// The fault of bodies that move without inertia in the lowered scene.
 pub(super) fn without_inertia(problem: &Problem) -> Option<Finding> {
     let model = problem.scene(&problem.start()).model;
-    Some(cannot_assemble(&rank::spinning_without_inertia(&model)?))
+    Some(cannot_assemble(&rank::moving_without_inertia(&model)?))
 }
 
 /// The fault of a scene that cannot start.
@@ -200,7 +200,8 @@ fn cannot_assemble(failure: &AssemblyFailure) -> Finding {
         AssemblyFailure::WithoutInertia { .. } => (
             "/bodies".to_owned(),
             "inertia in every direction that a body can move in",
-            "give a thin rod a radius: at a spherical joint it can spin about itself",
+            "give a thin rod a radius: at a spherical joint it can spin about itself; a body without mass needs joints that, with \
+             the bodies that have mass, determine its motion",
         ),
         AssemblyFailure::NoEquilibrium { .. } => (
             "/start".to_owned(),

@@ -39,6 +39,7 @@ mod modal;
 mod notes;
 mod origins;
 mod overrides;
+mod parameter_units;
 mod parts;
 mod placement;
 pub mod pointer;

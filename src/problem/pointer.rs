@@ -49,6 +49,11 @@ pub fn all(value: &Value) -> Vec<String> {
     list
 }
 
+/// Pointer to a parameter.
+pub fn of_parameter(name: &str) -> String {
+    join("/parameters", name)
+}
+
 /// Edit distance of two names, without case and separators; `None` if it exceeds a third of the
 /// characters of `wanted`.
 fn distance(wanted: &str, name: &str) -> Option<usize> {

@@ -208,6 +208,9 @@ impl<'a> Walker<'a> {
             let expected = format!("a number of size up to {LARGEST:e}");
             self.fault(Finding::new(pointer, describe(value), expected));
         }
+        // A mass may be 0, but not shrink to it.
+        let designed =
+            least.map(|(least, excluded)| (least, excluded || schema["designed"] == "positive"));
         let unit = schema["unit"].as_str().unwrap_or_default().to_owned();
         let barred = match &schema["design_variable"] {
             Value::Bool(true) => None,
@@ -217,7 +220,7 @@ impl<'a> Walker<'a> {
         let number = Number {
             unit,
             barred,
-            least,
+            least: designed,
             most: limit("maximum"),
         };
         self.structure.numbers.insert(pointer.to_owned(), number);

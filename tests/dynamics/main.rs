@@ -40,6 +40,7 @@ mod limits_of_rounding;
 mod load_derivatives;
 mod loads;
 mod lowering;
+mod massless;
 mod methods_match_references;
 mod newton_krylov;
 mod node_kinematics;

@@ -165,6 +165,42 @@ fn axes_and_units_change_nothing() {
     }
 }
 
+/// The work of all loads is the energy that an undamped plate gains, by all nodes and rigid, whatever the axes and units.
+#[test]
+fn works_are_the_gain_of_energy() {
+    let turn = matrix(&Numbers(3).orientation());
+    for (turn, units, basis) in [
+        (Mat3::identity(), (1.0, 1.0), "full"),
+        (turn, (1e3, 1e-3), "full"),
+        (turn, (1.0, 1.0), "rigid"),
+    ] {
+        let mut document = swing(turn, units, basis);
+        document["bodies"]["plate"]["elements"]["structure"]["damping"] = json!({"stiffness": 0});
+        document["simulation"] =
+            json!({"duration": 0.2, "steps": 400, "method": {"radau": {"stages": 3}}});
+        let mut functions = json!({
+            "start": {"value": {"at": 0, "of": {"energy": "total"}}},
+            "end": {"final": {"energy": "total"}},
+        });
+        for load in ["wind", "lift", "rope", "snow"] {
+            functions[load] = json!({"integral": {"power": {"load": load}}});
+        }
+        document["functions"] = functions;
+        let [start, end, works @ ..] = &values(&document)[..] else {
+            panic!("six values");
+        };
+        let (work, size) = works
+            .iter()
+            .fold((0.0, 0.0), |(sum, size), x| (sum + x, size + x.abs()));
+        let off = (end - start - work).abs();
+        assert!(works.iter().all(|x| x.abs() > 0.01 * size), "{works:?}");
+        assert!(
+            off < 1e-6 * size,
+            "{basis} {units:?} {start} {end} {works:?}"
+        );
+    }
+}
+
 /// Derivatives by sizes, values of a table, directions, thickness and duration, of plates by all nodes, in a basis and
 /// rigid.
 #[test]
@@ -186,6 +222,8 @@ fn derivatives_are_exact() {
             let functions = document["functions"].as_object_mut().expect("functions");
             functions.retain(|name, _| name != "strain energy 1" && name != "stress 1");
         }
+        document["functions"]["work"] = json!({"integral": {"power": {"load": "wind"}}});
+        document["functions"]["power"] = json!({"final": {"power": {"load": "lift"}}});
         document["loads"] = json!({
             "wind": {"pressure": {"body": "first", "faces": "all",
                                   "pressure": {"table": {"times": [0, 0.01, 0.02], "values": [1000, 3000, 2000]}}}},

@@ -198,7 +198,17 @@ fn a_parameter_has_the_unit_of_its_numbers() {
     assert_eq!(problem(&text).variables[1].unit, "rad");
     let own = problem(PLATE);
     let units: Vec<&str> = own.variables.iter().map(|own| own.unit.as_str()).collect();
-    assert_eq!(units, ["m", "Pa"]);
+    assert_eq!(units, ["m", "m"]);
+    // Terms of a sum have its unit; numbers without one have none.
+    for (point, unit) in [
+        ("= rho/9 - half", "m"),
+        ("= 0*rho + half", ""),
+        ("= rho*half", ""),
+        ("= rho - half + 0.1", ""),
+    ] {
+        let own = problem(&links(PARAMETERS, &format!("\"{point}\""), "\"= L\"", "0"));
+        assert_eq!(own.variables[1].unit, unit, "{point}");
+    }
 }
 
 /// A design at which an expression is not defined fails by name, and others do not.

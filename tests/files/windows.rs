@@ -256,6 +256,40 @@ fn chebyshevs_linkage_draws_its_line() {
     assert!(found[2] > 1e-5 && found[2] < 0.005, "{found:?}");
 }
 
+/// The largest value in a window is told with its error: that of a sine, at its crest, at the ends of windows and at samples.
+#[test]
+fn the_largest_value_in_a_window_has_an_error() {
+    let turn = |t: f64| 0.3 * f64::sin(2.0 * PI * 1.5 * t + 0.4);
+    let crest = (0.5 * PI - 0.4) / (3.0 * PI);
+    for samples in [20, 40, 80] {
+        for [from, to] in [[0.0, 1.0], [0.02, 0.3], [0.55, 0.73], [0.25, 0.45]] {
+            let document = json!({
+                "version": 1, "name": "sine", "gravity": [0, 0, 0],
+                "bodies": {"bar": {"shape": {"rod": {"length": 1, "radius": 0.01}}, "mass": 1}},
+                "joints": {"pin": {"revolute": {"between": ["bar", "ground"], "at": [0, 0, 0], "axis": [0, 0, 1]}}},
+                "drives": {"motor": {"joint": "pin", "turn": {"harmonic": {"amplitude": 0.3, "frequency": 1.5, "phase": 0.4}}}},
+                "simulation": {"duration": 1, "tolerance": 1e-12, "samples": samples},
+                "functions": {"most": {"ks": {"rho": 1000, "of": {"rotation": {"body": "bar", "axis": [0, 0, 1]}}, "during": [from, to]}}}
+            });
+            let problem = problem(&document);
+            let found = Evaluated::new(&problem, &[]).expect("runs").function(0);
+            let maximum = found.maximum.expect("a maximum");
+            let inside = (0..2)
+                .map(|k| crest + f64::from(k) / 1.5)
+                .filter(|t| (from..to).contains(t));
+            let exact = inside.map(turn).fold(turn(from).max(turn(to)), f64::max);
+            let off = (maximum.value - exact).abs();
+            let what = format!("{samples} {from} {to} {off:e} {maximum:?}");
+            assert!(
+                off <= maximum.error.max(1e-9) && maximum.error < 1e-2,
+                "{what}"
+            );
+            let is_sample = (maximum.time * f64::from(samples)).fract() < 1e-9;
+            assert!(maximum.error > 0.0 || is_sample, "{what}");
+        }
+    }
+}
+
 #[test]
 fn faults_have_their_place_and_a_hint() {
     let cases = [

@@ -10,7 +10,7 @@ use super::interpolation;
 use super::peak::stretches;
 use super::series::Series;
 use super::window::Edge;
-use super::windowed::{reading, samples_at};
+use super::windowed::{reading, stretch_at};
 use crate::integrate::Trajectory;
 use crate::linalg::SolveScalar;
 use crate::math::{Complex64, Dual, Scalar};
@@ -38,7 +38,7 @@ impl<S: SolveScalar> Series<S> {
         let all = stretches(run);
         let value = |i: usize| {
             let at = self.edge(i).place(model, run)?.at;
-            let of = interpolation::value(run, samples_at(run, &all, at.re()), at);
+            let of = interpolation::value(run, &stretch_at(run, &all, at.re()).samples, at);
             Some(reading(&of, &samples))
         };
         (0..self.data.times.len()).map(value).collect()
@@ -81,7 +81,7 @@ impl Series<f64> {
         };
         for i in 0..self.data.times.len() {
             let placed = self.edge(i).place(model, run)?;
-            let nodes = samples_at(run, &all, placed.at);
+            let nodes = &stretch_at(run, &all, placed.at).samples;
             let of = interpolation::value(run, nodes, Dual::new(placed.at, 1.0));
             let y = reading(&of, &lifted);
             let weight = self.data.weights[i];

@@ -129,6 +129,15 @@ impl Stretch {
         }
     }
 
+    /// Estimated error of the polynomial at `at`: by how much it changes without its farthest sample. None at samples.
+    pub fn error<T: Scalar, S: Scalar>(&self, run: &Trajectory<T>, values: &[S], at: f64) -> f64 {
+        let polynomial = self.polynomial(run, values);
+        if polynomial.nodes.iter().any(|node| node.0 == at) {
+            return 0.0;
+        }
+        (polynomial.without_farthest(at).value(at) - polynomial.value(at)).abs()
+    }
+
     /// Turning points inside the part.
     fn turns(&self, polynomial: &Polynomial) -> Vec<f64> {
         let nodes = &polynomial.nodes;
@@ -354,7 +363,7 @@ pub fn maximum_where<S: Scalar>(
                 best = Maximum {
                     value,
                     time: at * duration,
-                    error: (polynomial.without_farthest(at).value(at) - value).abs(),
+                    error: stretch.error(run, values, at),
                 };
             }
         }

@@ -50,15 +50,15 @@ pub(super) fn reading<S: Scalar>(of: &[(usize, S)], values: &[S]) -> S {
     })
 }
 
-/// The samples of the polynomial at the fraction `at`; of two parts that meet there, of the earlier.
-pub(super) fn samples_at<'a, T: Scalar>(
+/// The stretch with the fraction `at`; of two that meet there, the earlier.
+pub(super) fn stretch_at<'a, T: Scalar>(
     run: &Trajectory<T>,
     all: &'a [Stretch],
     at: f64,
-) -> &'a [usize] {
+) -> &'a Stretch {
     let end = |own: &Stretch| run.instants[own.samples[own.part.end]];
     let which = all.partition_point(|own| end(own) < at);
-    &all[which.min(all.len() - 1)].samples
+    &all[which.min(all.len() - 1)]
 }
 
 impl<S: Scalar> Span<S> {
@@ -115,7 +115,7 @@ impl<S: Scalar> Span<S> {
     fn points<T: Scalar>(&self, run: &Trajectory<T>, values: &[S]) -> Vec<(f64, Point<S>)> {
         let all = stretches(run);
         let edge = |end: S| {
-            let of = interpolation::value(run, samples_at(run, &all, end.re()), end);
+            let of = interpolation::value(run, &stretch_at(run, &all, end.re()).samples, end);
             let point = Point {
                 value: reading(&of, values),
                 of: of.iter().map(|&(k, weight)| (k, weight.re())).collect(),
@@ -150,7 +150,11 @@ impl<S: Scalar> Span<S> {
         match reduction {
             Reduction::Final => {
                 let at = self.ends[1];
-                let of = interpolation::value(run, samples_at(run, &stretches(run), at.re()), at);
+                let of = interpolation::value(
+                    run,
+                    &stretch_at(run, &stretches(run), at.re()).samples,
+                    at,
+                );
                 give(&of, 1.0);
                 reading(&of, values)
             }
@@ -296,12 +300,12 @@ pub(super) fn maximum<S: Scalar>(
 ) -> Maximum {
     let points = Span::of(run, ends).points(run, values).into_iter();
     let points = points.map(|(at, point)| (at, point.value.re()));
-    let top = points.fold((0.0, f64::NEG_INFINITY), |best, point| {
+    let (at, value) = points.fold((0.0, f64::NEG_INFINITY), |best, point| {
         if point.1 > best.1 { point } else { best }
     });
     Maximum {
-        value: top.1,
-        time: top.0 * run.duration.re(),
-        error: 0.0,
+        value,
+        time: at * run.duration.re(),
+        error: stretch_at(run, &stretches(run), at).error(run, values, at),
     }
 }

@@ -192,8 +192,12 @@ fn vibrations(body: &FlexibleBody<f64>) -> impl Iterator<Item = (f64, f64)> + us
     })
 }
 
-/// Largest acceleration of a point of a free body per force at this point \[1/kg\].
+/// Largest acceleration of a point of a free body per force at this point \[1/kg\]; 0 of a body without mass, which
+/// moves as others do.
 fn mobility(body: &RigidBody<f64>, point: &Vec3<f64>) -> f64 {
+    if body.mass == 0.0 {
+        return 0.0;
+    }
     let least = body.inertia.symmetric_eigenvalues().min();
     let turning = point.norm_squared() / least;
     1.0 / body.mass + if turning.is_finite() { turning } else { 0.0 }

@@ -243,7 +243,7 @@ pub enum IntegrationFailure {
     /// Mass and inertia of a body are not those of a solid.
     #[error(
         "body \"{body}\" has no mass and inertia of a solid: mass and principal moments are \
-         positive, and no moment exceeds the sum of the others"
+         not negative, and no moment exceeds the sum of the others"
     )]
     Unphysical {
         /// The body.

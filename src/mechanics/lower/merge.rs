@@ -54,7 +54,11 @@ fn poses<S: Scalar>(model: &Model<S>, cluster: &Cluster) -> (Vec3<S>, Vec<(usize
         mass += body.mass;
         moment += body.position * body.mass;
     }
-    let centre = moment / mass;
+    // Bodies without mass have no centre of mass; the host's place serves.
+    let centre = match mass.re() > 0.0 {
+        true => moment / mass,
+        false => model.bodies[cluster.host].position,
+    };
     let host = &model.bodies[cluster.host].orientation;
     let back = rotation::conjugate(host);
     let to_host = rotation::matrix(host).transpose();

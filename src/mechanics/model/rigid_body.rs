@@ -52,9 +52,9 @@ impl<S: Scalar> RigidBody<S> {
 }
 
 impl RigidBody<f64> {
-    /// Whether mass and inertia are those of a solid: a positive mass, and [`is_inertia_of_solid`].
+    /// Whether mass and inertia are those of a solid, or zero: no negative mass, and [`is_inertia_of_solid`].
     pub fn is_solid(&self, tolerance: f64) -> bool {
-        self.mass > 0.0 && is_inertia_of_solid(&self.inertia, tolerance)
+        self.mass >= 0.0 && is_inertia_of_solid(&self.inertia, tolerance)
     }
 }
 

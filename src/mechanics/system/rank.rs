@@ -14,6 +14,9 @@ const NEGLIGIBLE: f64 = 1e-10;
 /// A motion below this inertia or constraint, relative to the largest, has none.
 const LOOSE: f64 = 1e-13;
 
+/// A body whose part in a motion of unit size is below this takes no part in it.
+const MOVES: f64 = 1e-6;
+
 /// Names the redundant constraints at q or, if there are none, the bodies without inertia.
 pub fn explain<S: Scalar>(model: &Model<S>, q: &[S]) -> AssemblyFailure {
     let numbering = Numbering::new(model);
@@ -66,16 +69,15 @@ pub fn explain<S: Scalar>(model: &Model<S>, q: &[S]) -> AssemblyFailure {
     }
 }
 
-/// Names thin bodies that nothing keeps from spinning about their own axes where they are placed, with no inertia but
-/// round-off.
-pub fn spinning_without_inertia(model: &Model<f64>) -> Option<AssemblyFailure> {
-    let thin = |body: &RigidBody<f64>| {
-        let values = body.inertia.symmetric_eigenvalues();
-        body.mass > 0.0 && values.min() <= LOOSE * values.max()
-    };
+/// Names bodies that can move where they are placed with no inertia but round-off: thin ones that nothing keeps from
+/// spinning about their own axes, and bodies without mass whose motion the joints leave open.
+pub fn moving_without_inertia(model: &Model<f64>) -> Option<AssemblyFailure> {
     // Planar motions have no spin about axes in their plane.
-    let spatial = |body: &&RigidBody<f64>| body.mobility == Mobility::spatial();
-    if !model.bodies.iter().filter(spatial).any(thin) {
+    let suspicious = |&i: &usize| {
+        let body = &model.bodies[i];
+        body.mass == 0.0 || body.mobility == Mobility::spatial()
+    };
+    if !loose_bodies(model).iter().any(suspicious) {
         return None;
     }
     let (g, _) = redundancy::unit_rows(model, &guess(model).0);
@@ -84,52 +86,68 @@ pub fn spinning_without_inertia(model: &Model<f64>) -> Option<AssemblyFailure> {
     matches!(found, AssemblyFailure::WithoutInertia { .. }).then_some(found)
 }
 
+/// Bodies of the file that can move and have a direction without inertia: thin ones, and those without mass.
+fn loose_bodies(model: &Model<f64>) -> Vec<usize> {
+    let moves_loosely = |&i: &usize| {
+        let body = &model.bodies[i];
+        let moments = body.inertia.symmetric_eigenvalues();
+        let is_thin = moments.min() <= LOOSE * moments.max();
+        let is_loose = body.mass == 0.0 || is_thin;
+        body.mobility.unknowns() > 0 && is_loose && !model.is_internal(i)
+    };
+    (0..model.bodies.len()).filter(moves_loosely).collect()
+}
+
 /// Names the bodies that can move without inertia; `g` has the unit rows as columns. If there are
 /// none, the equations are singular for another reason.
+///
+/// Such a motion moves no direction with inertia. So the motions of the loose bodies alone are examined: those u
+/// that inertia M and rows G leave free, M u = 0 and G u = 0.
 fn without_inertia(model: &Model<f64>, g: &DMatrix<f64>) -> AssemblyFailure {
+    let loose = loose_bodies(model);
     let length = length_scale(model);
-    let n = 6 * model.bodies.len();
-    let mut inertia = DMatrix::zeros(n, n);
-    for (i, body) in model.bodies.iter().enumerate() {
-        let at = 6 * i;
-        for k in 0..3 {
-            inertia[(at + k, at + k)] = body.mass;
-            for l in 0..3 {
-                inertia[(at + 3 + k, at + 3 + l)] = body.inertia[(k, l)] / (length * length);
+    let moments = |body: &RigidBody<f64>| body.inertia / (length * length);
+    let largest = (model.bodies.iter()).fold(0.0_f64, |largest, body| {
+        largest.max(body.mass).max(moments(body).amax())
+    });
+    let scale = if largest > 0.0 { 2.0 / largest } else { 1.0 };
+    let n = 6 * loose.len();
+    let mut rows = DMatrix::zeros(n, g.ncols());
+    let mut held = DMatrix::zeros(n, n);
+    for (k, &i) in loose.iter().enumerate() {
+        let (body, at) = (&model.bodies[i], 6 * k);
+        rows.rows_mut(at, 6).copy_from(&g.rows(6 * i, 6));
+        for l in 0..3 {
+            held[(at + l, at + l)] = scale * body.mass;
+        }
+        let mut rotation = held.fixed_view_mut::<3, 3>(at + 3, at + 3);
+        rotation += scale * moments(body);
+        // Directions in which the body cannot move.
+        let directions = [&body.mobility.translation, &body.mobility.rotation];
+        for (part, directions) in directions.into_iter().enumerate() {
+            let mut block = held.fixed_view_mut::<3, 3>(at + 3 * part, at + 3 * part);
+            for fixed in (directions.free()..3).map(|l| directions.axis(l)) {
+                block += fixed * fixed.transpose();
             }
         }
     }
-    for body in &model.flexible {
-        for (carrier, _) in body.places() {
-            // Coordinates have inertia of their own; missing inertia of a carrier is no motion.
-            for k in 6 * carrier..6 * carrier + 6 {
-                inertia[(k, k)] = 1.0;
-            }
-        }
-    }
-    let largest = inertia.amax();
-    if largest > 0.0 {
-        inertia /= largest;
-    }
-    // A motion that neither joints nor inertia resist.
-    let held = &inertia + inertia.transpose() + g * g.transpose();
-    if held.symmetric_eigenvalues().min() > LOOSE {
-        return AssemblyFailure::Singular;
-    }
-    let names: Vec<&str> = model
-        .bodies
-        .iter()
-        .filter(|body| {
-            let values = body.inertia.symmetric_eigenvalues();
-            body.mass <= 0.0 || values.min() <= NEGLIGIBLE * values.max()
-        })
-        .map(|body| body.name.as_str())
+    held += &rows * rows.transpose();
+    let motions = held.symmetric_eigen();
+    let free: Vec<usize> = (0..n)
+        .filter(|&k| motions.eigenvalues[k] <= LOOSE)
         .collect();
-    if names.is_empty() {
-        AssemblyFailure::Singular
-    } else {
-        AssemblyFailure::WithoutInertia {
+    let moves = |&k: &usize| {
+        let part = |&motion: &usize| motions.eigenvectors.view((6 * k, motion), (6, 1)).norm();
+        free.iter().any(|motion| part(motion) > MOVES)
+    };
+    let names: Vec<&str> = (0..loose.len())
+        .filter(moves)
+        .map(|k| model.bodies[loose[k]].name.as_str())
+        .collect();
+    match names.is_empty() {
+        true => AssemblyFailure::Singular,
+        false => AssemblyFailure::WithoutInertia {
             bodies: names.join(", "),
-        }
+        },
     }
 }

@@ -5,6 +5,7 @@ use crate::finding::Finding;
 use crate::mass::{mass_properties, volume};
 use crate::placement::{GROUND, placement_order};
 use crate::pointer::join;
+use crate::quantity::Quantity;
 use crate::schema::flexible::Start;
 use crate::schema::mechanics::{Body, Location, Place, Shape, Turns};
 
@@ -119,6 +120,8 @@ impl Checker<'_> {
                 let found = "the density of a rod without radius";
                 wrong("density", found, "a mass, or a radius above 0");
             }
+            // Without mass there is no inertia.
+            (None, None, Some(mass)) if *mass == Quantity::fixed(0.0) => {}
             (None, None, mass) if mass.is_none() || body.inertia.is_none() => {
                 let finding = Finding::new(
                     pointer,

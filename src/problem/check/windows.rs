@@ -7,7 +7,6 @@ use crate::placement::GROUND;
 use crate::pointer::{advice, join};
 use crate::schema::combined::PowerOf;
 use crate::schema::functions::{Instant, OfMotion};
-use crate::schema::loads::Load;
 use crate::schema::mechanics::Point;
 use crate::schema::windows::{During, Edge, Over, Reach};
 
@@ -222,15 +221,8 @@ impl Checker<'_> {
     fn power(&mut self, pointer: &str, of: &PowerOf) {
         let (key, name, names): (_, _, Vec<&str>) = match of {
             PowerOf::Load(name) => {
-                let spread = |load: &Load| {
-                    matches!(
-                        load,
-                        Load::Pressure(_) | Load::Area(_) | Load::Edge(_) | Load::Line(_)
-                    )
-                };
-                let loads = self.document.loads.iter();
-                let loads = loads.filter(|(_, load)| !spread(load));
-                ("load", name, loads.map(|(name, _)| name.as_str()).collect())
+                let loads = self.document.loads.keys();
+                ("load", name, loads.map(String::as_str).collect())
             }
             PowerOf::Drive(name) => {
                 let drives = self.document.drives.keys();
@@ -242,7 +234,7 @@ impl Checker<'_> {
             return;
         }
         let expected = match of {
-            PowerOf::Load(_) => "the name of a load at points or joints",
+            PowerOf::Load(_) => "the name of a load",
             PowerOf::Drive(_) => "the name of a drive",
         };
         let hint = match names.is_empty() {

@@ -321,7 +321,7 @@ fn an_override_that_does_not_fit() {
     expect_override(
         "/bodies/con_rod/mass=-3",
         "--set /bodies/con_rod/mass=-3  /bodies/con_rod/mass\n  found -3, \
-         expected a number above 0 [kg]",
+         expected a number of at least 0 [kg]",
     );
 }
 

@@ -214,22 +214,101 @@ impl<S: Scalar> Acting<'_, S> {
     }
 }
 
+/// Forces on the frame of a body, force in ground axes and torque in body axes about the origin, and on its
+/// coordinates; or velocities that these have.
+struct Generalised<S> {
+    linear: Vec3<S>,
+    angular: Vec3<S>,
+    elastic: Vec<S>,
+}
+
+impl<S: Scalar> Acting<'_, S> {
+    /// The forces of the load.
+    fn forces(&self) -> Generalised<S> {
+        let (mut force, mut torque) = (Vec3::zeros(), Vec3::zeros());
+        let mut elastic = vec![S::zero(); self.q.len()];
+        self.for_each_patch(|patch| {
+            for ((&node, x), unit) in patch.nodes.iter().zip(&patch.x).zip(&patch.unit) {
+                let own = unit * self.size;
+                force += own;
+                torque += x.cross(&own);
+                self.add_force(node, &own, &mut elastic);
+            }
+        });
+        Generalised {
+            linear: self.rotation * force,
+            angular: torque,
+            elastic,
+        }
+    }
+
+    /// The velocities of the body.
+    fn velocities(&self, here: &InMotion<S>) -> Generalised<S> {
+        let frame = &here.motions[self.body.frame];
+        let rates = self.body.places();
+        Generalised {
+            linear: frame.velocity,
+            angular: frame.omega,
+            elastic: rates
+                .map(|(carrier, k)| here.motions[carrier].velocity[k])
+                .collect(),
+        }
+    }
+}
+
+impl<S: Scalar> Generalised<S> {
+    /// Adds these forces to those of the scene.
+    fn add_to(&self, here: &InMotion<S>, body: &FlexibleBody<S>, out: &mut [S]) {
+        let frame = here.numbering.velocity(body.frame);
+        super::add6(&mut out[frame..], &self.linear, &self.angular);
+        add_coordinates(here.numbering, body, &self.elastic, out);
+    }
+
+    fn dot(&self, other: &Self) -> S {
+        let elastic = self.elastic.iter().zip(&other.elastic);
+        let rigid = self.linear.dot(&other.linear) + self.angular.dot(&other.angular);
+        elastic.fold(rigid, |sum, (x, y)| sum + *x * *y)
+    }
+}
+
+impl Generalised<f64> {
+    fn times(mut self, factor: f64) -> Self {
+        self.linear *= factor;
+        self.angular *= factor;
+        self.elastic.iter_mut().for_each(|x| *x *= factor);
+        self
+    }
+}
+
 /// Adds the forces on frames (force in ground axes, torque in body axes about the origin) and on elastic coordinates.
 pub(super) fn add_forces<S: Scalar>(here: &InMotion<S>, out: &mut [S]) {
     for_each(here, |_, acting| {
-        let (mut force, mut torque) = (Vec3::zeros(), Vec3::zeros());
-        let mut elastic = vec![S::zero(); acting.q.len()];
-        acting.for_each_patch(|patch| {
-            for ((&node, x), unit) in patch.nodes.iter().zip(&patch.x).zip(&patch.unit) {
-                let own = unit * acting.size;
-                force += own;
-                torque += x.cross(&own);
-                acting.add_force(node, &own, &mut elastic);
-            }
-        });
-        let frame = here.numbering.velocity(acting.body.frame);
-        super::add6(&mut out[frame..], &(acting.rotation * force), &torque);
-        add_coordinates(here.numbering, acting.body, &elastic, out);
+        acting.forces().add_to(here, acting.body, out)
+    });
+}
+
+/// The power of a load; zero of one that is not spread over elements.
+pub(super) fn power<S: Scalar>(here: &InMotion<S>, load: usize) -> S {
+    let mut found = S::zero();
+    for_each(here, |i, acting| {
+        if i == load {
+            found = acting.forces().dot(&acting.velocities(here));
+        }
+    });
+    found
+}
+
+/// Adds `weight` times the derivative of [`power`] to tangent positions, velocities, time and parameters.
+pub(super) fn pull_power(here: &InMotion<f64>, load: usize, weight: f64, out: &mut LoadCotangent) {
+    for_each(here, |i, acting| {
+        if i != load {
+            return;
+        }
+        // The power is linear in the velocities that the forces are weighed with.
+        acting.pull_forces(here, i, acting.velocities(here).times(weight), out);
+        if let Some(v) = out.v.as_deref_mut() {
+            acting.forces().times(weight).add_to(here, acting.body, v);
+        }
     });
 }
 
@@ -316,38 +395,58 @@ pub(super) fn emit_jacobian<S: Scalar>(
 pub(super) fn pull_back(here: &InMotion<f64>, psi: &[f64], out: &mut LoadCotangent) {
     let numbering = here.numbering;
     for_each(here, |i, acting| {
-        let frame = numbering.velocity(acting.body.frame);
-        let (linear, angular) = super::velocities_of(&psi[frame..]);
+        let (linear, angular) = super::velocities_of(&psi[numbering.velocity(acting.body.frame)..]);
         let places = acting.body.places();
-        let elastic: Vec<f64> = places
-            .map(|(carrier, k)| psi[numbering.velocity(carrier) + k])
-            .collect();
+        let psi = Generalised {
+            linear,
+            angular,
+            elastic: places
+                .map(|(carrier, k)| psi[numbering.velocity(carrier) + k])
+                .collect(),
+        };
+        acting.pull_forces(here, i, psi, out);
+    });
+}
+
+impl Acting<'_, f64> {
+    /// Pulls the cotangent ψ of the forces of load `i` back to tangent positions, time and parameters.
+    fn pull_forces(
+        &self,
+        here: &InMotion<f64>,
+        i: usize,
+        psi: Generalised<f64>,
+        out: &mut LoadCotangent,
+    ) {
         // The virtual displacements of the nodes are those of the coordinates ψ.
         let virtually = Acting {
-            q: elastic,
-            ..*acting
+            q: psi.elastic,
+            ..*self
         };
-        let mut by_q = vec![0.0; acting.q.len()];
+        let mut by_q = vec![0.0; self.q.len()];
         let (mut theta, mut by_size, mut by_direction) = (Vec3::zeros(), 0.0, Vec3::zeros());
-        acting.for_each_patch(|patch| {
+        self.for_each_patch(|patch| {
             let of = |&node: &usize| Vec3::from_fn(|k, _| virtually.displacement(node, k));
             let nodes: Vec<Vec3<f64>> = patch.nodes.iter().map(of).collect();
             let psi = Virtual {
-                linear: acting.rotation.tr_mul(&linear),
-                angular,
+                linear: self.rotation.tr_mul(&psi.linear),
+                angular: psi.angular,
                 nodes: &nodes,
             };
-            let by = acting.pull(patch, &psi);
+            let by = self.pull(patch, &psi);
             theta += by.theta;
             by_size += by.magnitude;
             by_direction += by.direction;
             for (&node, x) in patch.nodes.iter().zip(&by.nodes) {
-                acting.add_force(node, x, &mut by_q);
+                self.add_force(node, x, &mut by_q);
             }
         });
         if let Some(y) = out.y.as_deref_mut() {
-            super::add6(&mut y[frame..], &Vec3::zeros(), &theta);
-            add_coordinates(numbering, acting.body, &by_q, y);
+            let by = Generalised {
+                linear: Vec3::zeros(),
+                angular: theta,
+                elastic: by_q,
+            };
+            by.add_to(here, self.body, y);
         }
         let LoadKind::Distributed(own) = &mut out.model.loads[i].kind else {
             unreachable!("a cotangent has the kind of its load");
@@ -356,7 +455,7 @@ pub(super) fn pull_back(here: &InMotion<f64>, psi: &[f64], out: &mut LoadCotange
             Spread::Pressure { .. } => {}
             Spread::Dead { direction, .. } => *direction += by_direction,
         }
-        let magnitude = &acting.load.magnitude;
+        let magnitude = &self.load.magnitude;
         *out.time += magnitude.pull_back(here.time, [by_size, 0.0, 0.0], &mut own.magnitude);
-    });
+    }
 }

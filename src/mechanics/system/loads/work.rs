@@ -3,7 +3,7 @@
 use super::parameters::{give_to_joint, give_to_parameters};
 use super::power::{SLIDE, forces, turn_rate};
 use super::pull::{Pulled, pull, pull_slide, pull_turn};
-use super::{Acting, for_each_load, give_to_states};
+use super::{Acting, LoadCotangent, distributed, for_each_load, give_to_states};
 use crate::math::{Scalar, Vec3};
 use crate::model::DegreeOfFreedom;
 use crate::system::bodies::{BodyMotion, add6};
@@ -16,10 +16,10 @@ fn velocities<S: Scalar>(at: &Acting<S>) -> [(Vec3<S>, Vec3<S>); 2] {
     [at.a.motion, at.b.motion].map(|motion| (motion.velocity, motion.omega))
 }
 
-/// The power \[W\] by which a load drives its bodies: Σ (Fᵀ ṙ + Mᵀ ω). Positive if it gives energy to them. Not that of
-/// loads that are spread over elements.
+/// The power \[W\] by which a load drives its bodies: Σ (Fᵀ ṙ + Mᵀ ω), over the nodes of a load that is spread over
+/// elements. Positive if it gives energy to them.
 pub fn power<S: Scalar>(here: &InMotion<S>, load: usize) -> S {
-    let mut found = S::zero();
+    let mut found = distributed::power(here, load);
     for_each_load(here.model, here.motions, |i, kind, at| {
         if i == load {
             let pairs = forces(kind, at, here.time).into_iter().zip(velocities(at));
@@ -51,6 +51,13 @@ pub fn pull_power(here: &InMotion<f64>, load: usize, weight: f64, out: &mut Join
             }
         }
     });
+    let mut to = LoadCotangent {
+        y: out.y.as_deref_mut(),
+        v: out.v.as_deref_mut(),
+        time: &mut by_time,
+        model: out.model,
+    };
+    distributed::pull_power(here, load, weight, &mut to);
     by_time
 }
 
