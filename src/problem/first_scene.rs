@@ -197,11 +197,15 @@ fn cannot_assemble(failure: &AssemblyFailure) -> Finding {
             "constraints that are independent of each other",
             "leave one of the joints out, or replace a revolute joint by a spherical one",
         ),
-        AssemblyFailure::WithoutInertia { .. } => (
+        AssemblyFailure::WithoutInertia { without_mass, .. } => (
             "/bodies".to_owned(),
             "inertia in every direction that a body can move in",
-            "give a thin rod a radius: at a spherical joint it can spin about itself; a body without mass needs joints that, with \
-             the bodies that have mass, determine its motion",
+            match without_mass {
+                true => {
+                    "a body without mass needs joints that, with the bodies that have mass, determine its motion"
+                }
+                false => "give a thin rod a radius: at a spherical joint it can spin about itself",
+            },
         ),
         AssemblyFailure::NoEquilibrium { .. } => (
             "/start".to_owned(),

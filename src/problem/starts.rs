@@ -298,7 +298,7 @@ impl<S: Scalar> Starts<S> {
         }
         // Point masses do not rotate.
         for body in moving {
-            if body.inertia.iter().all(|x| x.re() == 0.0) {
+            if body.is_point() {
                 body.mobility = Mobility::point();
             }
         }

@@ -139,6 +139,102 @@ fn a_link_without_mass_moves_in_space() {
     assert!(text.contains("without inertia: coupler,"), "{text}");
 }
 
+/// Joints of a loop start as given, also those of a link without mass.
+#[test]
+fn joints_of_links_without_mass_start_as_given() {
+    for joint in ["o", "p", "r"] {
+        let at = |mass: f64| {
+            let mut document = linkage(mass, 0.4, "dop853");
+            document["joints"][joint]["revolute"]["start"] =
+                json!({"turn": {"angle": 0.2, "rate": 1.5}});
+            document["functions"]["rate"] =
+                json!({"value": {"at": 0, "of": {"angle_rate": {"joint": joint}}}});
+            let found = values(&document);
+            assert!((found[3] - 1.5).abs() < 1e-9, "{joint} {found:?}");
+            found
+        };
+        for (x, y) in at(0.0).iter().zip(at(1e-6)) {
+            assert!((x / y - 1.0).abs() < 1e-3, "{joint} {x} {y}");
+        }
+    }
+}
+
+/// In equilibrium a link without mass takes its loads to its neighbours, flexible ones too: an arch of a beam, such a link and a
+/// strut, which rests as it starts.
+#[test]
+fn links_without_mass_start_in_equilibrium() {
+    let arch = |mass: f64| {
+        let moment = 0.01 * mass;
+        json!({
+            "version": 1, "name": "arch",
+            "bodies": {
+                "beam": {"beam": {"length": 1, "section": {"rectangle": {"width": 0.02, "height": 0.01}},
+                    "material": {"young": 7e9, "density": 2700}, "modes": {"bending_y": 3, "bending_z": 0, "torsion": 0},
+                    "damping": {"ratio": 0.02}}, "place": {"put": "start", "at": [0, 0, 0]}},
+                "link": {"mass": mass, "inertia": {"xx": moment, "yy": moment, "zz": moment},
+                    "points": {"load": [0.1, 0.05, 0]}, "place": {"at": [1, 0, 0]}},
+                "strut": {"shape": {"box": {"size": [0.1, 0.3, 0.1]}}, "mass": 0.5, "place": {"at": [1.2, -0.1, 0]}}
+            },
+            "joints": {
+                "root": {"weld": {"between": ["beam", "ground"], "at": "beam.start"}},
+                "tip": {"revolute": {"between": ["link", "beam"], "at": "beam.end", "axis": [0, 0, 1]}},
+                "knee": {"revolute": {"between": ["link", "strut"], "at": [1.2, 0.05, 0], "axis": [0, 0, 1]}},
+                "foot": {"revolute": {"between": ["strut", "ground"], "at": [1.2, -0.25, 0], "axis": [0, 0, 1]}}
+            },
+            "loads": {
+                "push": {"force": {"body": "link", "point": "load", "direction": [0, -1, 0], "magnitude": 1}},
+                "twist": {"torque": {"body": "link", "direction": [0, 0, 1], "magnitude": 0.5}}
+            },
+            "start": "equilibrium", "simulation": {"duration": 0.2},
+            "functions": {
+                "height": {"final": {"position": {"body": "link", "point": "load", "direction": [0, 1, 0]}}},
+                "force": {"final": {"joint_force": {"joint": "tip", "direction": [0, 1, 0]}}},
+                "strain": {"mean": {"strain_energy": {"body": "beam"}}},
+                "still": {"final": {"speed_squared": {"body": "strut"}}}
+            },
+            "variables": {
+                "push": {"path": "/loads/push/force/magnitude", "lower": 0.1, "upper": 2},
+                "young": {"path": "/bodies/beam/beam/material/young", "lower": 1e9, "upper": 1e10}
+            }
+        })
+    };
+    let document = arch(0.0);
+    let [height, force, strain, still] = values(&document)[..] else {
+        panic!("four values");
+    };
+    assert!(still < 1e-15, "{still}");
+    let light = values(&arch(1e-6));
+    for (x, y) in [height, force, strain].iter().zip(&light) {
+        assert!((x / y - 1.0).abs() < 1e-4, "{x} {y}");
+    }
+    // An end piece without mass that is welded to a beam.
+    let mut document = arch(0.0);
+    document["joints"] = json!({
+        "root": document["joints"]["root"],
+        "tip": {"weld": {"between": ["link", "beam"], "at": "beam.end"}}
+    });
+    document["bodies"]
+        .as_object_mut()
+        .expect("bodies")
+        .shift_remove("strut");
+    document["functions"]
+        .as_object_mut()
+        .expect("functions")
+        .shift_remove("still");
+    let welded = values(&document);
+    let stiffness = 7e9 * 0.02 * 0.01_f64.powi(3) / 12.0;
+    // Its weight, 1 N at 0.1 m beyond its tip, and 0.5 N m at the tip.
+    let (weight, twist) = (2700.0 * 0.02 * 0.01 * 9.81, 0.5 - 0.1);
+    let sag = (weight / 8.0 + 1.0 / 3.0 - twist / 2.0) / stiffness;
+    let slope = (weight / 6.0 + 0.5 - twist) / stiffness;
+    let exact = 0.05 - sag - 0.1 * slope;
+    assert!(
+        (welded[0] - exact).abs() < 0.02 * sag,
+        "{} {exact} {sag}",
+        welded[0]
+    );
+}
+
 /// What is said of a file that cannot be read.
 fn refused(document: &Value) -> String {
     let faults = Problem::parse(&document.to_string(), "linkage.json", &[]);

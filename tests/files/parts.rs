@@ -400,7 +400,7 @@ fn parts_may_be_files() {
         "{fault}"
     );
     assert!(
-        fault.contains("found -1.6, expected a number above 0 [kg]"),
+        fault.contains("found -1.6, expected a number of at least 0 [kg]"),
         "{fault}"
     );
     std::fs::write(&arm, content.replace("upper.b", "upper.c")).expect("writes");

@@ -49,6 +49,11 @@ impl<S: Scalar> RigidBody<S> {
             mobility: Mobility::spatial(),
         }
     }
+
+    /// Whether it is a point mass, which does not rotate: a mass without inertia. Joints do turn links without mass.
+    pub fn is_point(&self) -> bool {
+        self.mass.re() > 0.0 && self.inertia.iter().all(|x| x.re() == 0.0)
+    }
 }
 
 impl RigidBody<f64> {

@@ -60,6 +60,8 @@ pub enum AssemblyFailure {
     WithoutInertia {
         /// Names of the bodies.
         bodies: String,
+        /// Whether none of them has mass.
+        without_mass: bool,
     },
     /// Newton's method finds no quasi-static start.
     #[error(

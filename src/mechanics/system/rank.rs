@@ -140,14 +140,16 @@ fn without_inertia(model: &Model<f64>, g: &DMatrix<f64>) -> AssemblyFailure {
         let part = |&motion: &usize| motions.eigenvectors.view((6 * k, motion), (6, 1)).norm();
         free.iter().any(|motion| part(motion) > MOVES)
     };
-    let names: Vec<&str> = (0..loose.len())
+    let moving: Vec<&RigidBody<f64>> = (0..loose.len())
         .filter(moves)
-        .map(|k| model.bodies[loose[k]].name.as_str())
+        .map(|k| &model.bodies[loose[k]])
         .collect();
+    let names: Vec<&str> = moving.iter().map(|body| body.name.as_str()).collect();
     match names.is_empty() {
         true => AssemblyFailure::Singular,
         false => AssemblyFailure::WithoutInertia {
             bodies: names.join(", "),
+            without_mass: moving.iter().all(|body| body.mass == 0.0),
         },
     }
 }

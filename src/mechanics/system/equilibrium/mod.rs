@@ -135,8 +135,7 @@ pub fn settle<S: Scalar>(model: &mut Model<S>, known: &KnownStarts) -> Result<()
 fn without_spin<S: Scalar>(model: &Model<S>) -> Model<S> {
     let mut own = model.clone();
     for body in 0..own.bodies.len() {
-        let without = own.bodies[body].inertia.iter().all(|x| x.re() == 0.0);
-        if without && !own.is_of_flexible(body) {
+        if own.bodies[body].is_point() && !own.is_of_flexible(body) {
             own.bodies[body].mobility = Mobility::point();
         }
     }
