@@ -64,7 +64,7 @@ def test_every_key_is_an_argument(schema: dict[str, Any]) -> None:
 
 def test_docstrings_have_units() -> None:
     for item, text in [
-        (Machine.add_body, "mass : number above 0 [kg], optional"),
+        (Machine.add_body, "mass : number at least 0 [kg], optional"),
         (parts.loads.spring, "rest_length : number at least 0 [m]"),
         (parts.varying_torques.table, "values : numbers, shape (n,) [N m]"),
     ]:

@@ -276,7 +276,7 @@ WRONG: list[tuple[Wrong, str, str]] = [
     (lambda m: m.add_joint("hinge", Joint({"hinge": {"between": ["arm", "ground"]}})),
      'found the key "hinge", expected one of', 'made by add_joint("hinge", …)'),
     (lambda m: m.add_body("bob", shape=shapes.sphere(radius=0.1), mass=-1),
-     "found -1, expected a number above 0 [kg]", 'made by add_body("bob", …)'),
+     "found -1, expected a number of at least 0 [kg]", 'made by add_body("bob", …)'),
     (lambda m: m.add_body("bob", shape=shapes.sphere(radius="10 cm"), mass=1),
      'found "10 cm", expected a number above 0 [m]', 'made by add_body("bob", …)'),
     (lambda m: m.add_body("bob", shape=shapes.sphere(radius=0.1)),
