@@ -84,19 +84,18 @@ pub(super) fn claims<'a>(
 /// come first, and claims that differ are none.
 pub(super) fn give(claims: &[Claim], variables: &mut [Variable]) {
     for variable in variables.iter_mut().filter(|own| own.unit == OF_PARAMETERS) {
-        let of_this = |claim: &&Claim| variable.paths.contains(&claim.path);
-        let all = claims.iter().filter(of_this);
-        let certain = all.clone().filter(|claim| claim.certain);
-        let units = |claims: &mut dyn Iterator<Item = &Claim>| -> IndexSet<String> {
-            claims.map(|claim| claim.unit.clone()).collect()
-        };
-        let known = units(&mut certain.into_iter());
-        let mut known = match known.is_empty() {
-            true => units(&mut all.into_iter()),
-            false => known,
-        };
-        if let (1, Some(unit)) = (known.len(), known.pop()) {
-            variable.unit = unit;
+        let of_this = claims
+            .iter()
+            .filter(|claim| variable.paths.contains(&claim.path));
+        let (certain, others): (Vec<&Claim>, Vec<&Claim>) =
+            of_this.partition(|claim| claim.certain);
+        let counting = if certain.is_empty() { others } else { certain };
+        let mut units = counting.into_iter().map(|claim| &claim.unit);
+        if let Some(first) = units
+            .next()
+            .filter(|first| units.all(|unit| unit == *first))
+        {
+            first.clone_into(&mut variable.unit);
         }
     }
 }

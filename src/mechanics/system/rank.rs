@@ -5,7 +5,7 @@ use super::numbering::Numbering;
 use super::placement::{guess, length_scale};
 use super::redundancy;
 use crate::math::{Parameters, Scalar};
-use crate::model::{Mobility, Model, RigidBody};
+use crate::model::{Model, RigidBody};
 use nalgebra::DMatrix;
 
 /// Singular values below this, relative to the largest, are zero.
@@ -72,12 +72,7 @@ pub fn explain<S: Scalar>(model: &Model<S>, q: &[S]) -> AssemblyFailure {
 /// Names bodies that can move where they are placed with no inertia but round-off: thin ones that nothing keeps from
 /// spinning about their own axes, and bodies without mass whose motion the joints leave open.
 pub fn moving_without_inertia(model: &Model<f64>) -> Option<AssemblyFailure> {
-    // Planar motions have no spin about axes in their plane.
-    let suspicious = |&i: &usize| {
-        let body = &model.bodies[i];
-        body.mass == 0.0 || body.mobility == Mobility::spatial()
-    };
-    if !loose_bodies(model).iter().any(suspicious) {
+    if loose_bodies(model).is_empty() {
         return None;
     }
     let (g, _) = redundancy::unit_rows(model, &guess(model).0);
@@ -86,16 +81,22 @@ pub fn moving_without_inertia(model: &Model<f64>) -> Option<AssemblyFailure> {
     matches!(found, AssemblyFailure::WithoutInertia { .. }).then_some(found)
 }
 
-/// Bodies of the file that can move and have a direction without inertia: thin ones, and those without mass.
+/// Bodies of the file without inertia in a direction in which they can move: those without mass, and those that are thin
+/// about an axis about which they turn. In a plane that is the normal alone.
 fn loose_bodies(model: &Model<f64>) -> Vec<usize> {
-    let moves_loosely = |&i: &usize| {
+    let is_loose = |&i: &usize| {
         let body = &model.bodies[i];
         let moments = body.inertia.symmetric_eigenvalues();
-        let is_thin = moments.min() <= LOOSE * moments.max();
-        let is_loose = body.mass == 0.0 || is_thin;
-        body.mobility.unknowns() > 0 && is_loose && !model.is_internal(i)
+        let rotation = &body.mobility.rotation;
+        let least = match rotation.free() {
+            0 => f64::INFINITY,
+            1 => rotation.quadratic(&body.inertia, 0, 0),
+            _ => moments.min(),
+        };
+        let lacks_inertia = body.mass == 0.0 || least <= LOOSE * moments.max();
+        body.mobility.unknowns() > 0 && lacks_inertia && !model.is_internal(i)
     };
-    (0..model.bodies.len()).filter(moves_loosely).collect()
+    (0..model.bodies.len()).filter(is_loose).collect()
 }
 
 /// Names the bodies that can move without inertia; `g` has the unit rows as columns. If there are

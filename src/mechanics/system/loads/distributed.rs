@@ -62,26 +62,32 @@ struct Pulled<S> {
     direction: Vec3<S>,
 }
 
+/// Load `i` as it acts; `None` if it is not spread over elements.
+fn acting<'a, S: Scalar>(here: &InMotion<'a, S>, i: usize) -> Option<Acting<'a, S>> {
+    let LoadKind::Distributed(load) = &here.model.loads[i].kind else {
+        return None;
+    };
+    let mut bodies = here.model.flexible.iter();
+    let body = bodies.find(|own| own.frame == load.body);
+    let found = body.and_then(|body| Some((body, body.form.shells()?)));
+    let (body, finite) = found.expect("a distributed load acts on a body of elements");
+    Some(Acting {
+        load,
+        body,
+        finite,
+        basis: basis_of(body),
+        rotation: here.motions[load.body].rotation,
+        q: coordinates(body, here.motions),
+        size: load.magnitude.value(here.time),
+    })
+}
+
 /// Calls `visit(number of the load, the load)` for every distributed load.
 fn for_each<S: Scalar>(here: &InMotion<S>, mut visit: impl FnMut(usize, &Acting<S>)) {
-    for (i, load) in here.model.loads.iter().enumerate() {
-        let LoadKind::Distributed(load) = &load.kind else {
-            continue;
-        };
-        let mut bodies = here.model.flexible.iter();
-        let body = bodies.find(|own| own.frame == load.body);
-        let found = body.and_then(|body| Some((body, body.form.shells()?)));
-        let (body, finite) = found.expect("a distributed load acts on a body of elements");
-        let acting = Acting {
-            load,
-            body,
-            finite,
-            basis: basis_of(body),
-            rotation: here.motions[load.body].rotation,
-            q: coordinates(body, here.motions),
-            size: load.magnitude.value(here.time),
-        };
-        visit(i, &acting);
+    for i in 0..here.model.loads.len() {
+        if let Some(acting) = acting(here, i) {
+            visit(i, &acting);
+        }
     }
 }
 
@@ -287,29 +293,22 @@ pub(super) fn add_forces<S: Scalar>(here: &InMotion<S>, out: &mut [S]) {
     });
 }
 
-/// The power of a load; zero of one that is not spread over elements.
-pub(super) fn power<S: Scalar>(here: &InMotion<S>, load: usize) -> S {
-    let mut found = S::zero();
-    for_each(here, |i, acting| {
-        if i == load {
-            found = acting.forces().dot(&acting.velocities(here));
-        }
-    });
-    found
+/// The power of a load; `None` if it is not spread over elements.
+pub(super) fn power<S: Scalar>(here: &InMotion<S>, load: usize) -> Option<S> {
+    let acting = acting(here, load)?;
+    Some(acting.forces().dot(&acting.velocities(here)))
 }
 
 /// Adds `weight` times the derivative of [`power`] to tangent positions, velocities, time and parameters.
 pub(super) fn pull_power(here: &InMotion<f64>, load: usize, weight: f64, out: &mut LoadCotangent) {
-    for_each(here, |i, acting| {
-        if i != load {
-            return;
-        }
-        // The power is linear in the velocities that the forces are weighed with.
-        acting.pull_forces(here, i, acting.velocities(here).times(weight), out);
-        if let Some(v) = out.v.as_deref_mut() {
-            acting.forces().times(weight).add_to(here, acting.body, v);
-        }
-    });
+    let Some(acting) = acting(here, load) else {
+        return;
+    };
+    // The power is linear in the velocities that the forces are weighed with.
+    acting.pull_forces(here, load, acting.velocities(here).times(weight), out);
+    if let Some(v) = out.v.as_deref_mut() {
+        acting.forces().times(weight).add_to(here, acting.body, v);
+    }
 }
 
 /// Emits the derivatives of [`add_forces`] in tangent positions; those in velocities vanish.

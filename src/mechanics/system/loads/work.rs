@@ -19,7 +19,10 @@ fn velocities<S: Scalar>(at: &Acting<S>) -> [(Vec3<S>, Vec3<S>); 2] {
 /// The power \[W\] by which a load drives its bodies: Σ (Fᵀ ṙ + Mᵀ ω), over the nodes of a load that is spread over
 /// elements. Positive if it gives energy to them.
 pub fn power<S: Scalar>(here: &InMotion<S>, load: usize) -> S {
-    let mut found = distributed::power(here, load);
+    if let Some(power) = distributed::power(here, load) {
+        return power;
+    }
+    let mut found = S::zero();
     for_each_load(here.model, here.motions, |i, kind, at| {
         if i == load {
             let pairs = forces(kind, at, here.time).into_iter().zip(velocities(at));
