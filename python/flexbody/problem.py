@@ -415,8 +415,8 @@ class Problem:
         return Response(self, self._core.motion(self.design(x), times, parts))
 
     def rest(self, x: Design = None) -> Rest | dict[str, State]:
-        """What is at rest: the solved load cases of structures, or for a motion with `"start": "equilibrium"` the state
-        of each body in equilibrium.
+        """What is at rest: the solved load cases of structures, or the state of each body: of a machine with
+        `"analysis": "rest"`, or of a motion with `"start": "equilibrium"`.
 
         Raises
         ------
@@ -429,7 +429,7 @@ class Problem:
         if self.is_at_rest:
             return Rest(self, design, *self._core.rest(design))
         if not self._core.starts_in_equilibrium:
-            raise ValueError('the motion does not start at rest: set "start" to "equilibrium"')
+            raise ValueError('the motion does not start at rest: set "start" to "equilibrium", or "analysis" to "rest"')
         return {name: State(*map(np.array, numbers)) for name, *numbers in self._core.start_states(design)}
 
     def modes(self, x: Design = None, count: int = 10) -> Modes:

@@ -180,6 +180,18 @@ fn as_json(
     let first = &simulation.observations[0];
     let conserved = simulation.at.scene.model.conserves_energy();
     let (position, velocity) = simulation.constraint_drift();
+    if simulation.at.is_rest() {
+        let all = json!({
+            "name": problem.name,
+            "analysis": "rest",
+            "functions": functions,
+            "energy": first.kinetic + first.potential,
+            "left": {"acceleration": simulation.unbalanced(), "gaps": position},
+            "notes": driver::start::notes(problem, &simulation.at.x),
+            "warnings": warnings,
+        });
+        return Ok(serde_json::to_string_pretty(&all).map_err(Failure::numerical)? + "\n");
+    }
     let mut all = json!({
         "name": problem.name,
         "duration": run.duration,
@@ -219,18 +231,22 @@ fn summary(problem: &Problem, simulation: &Simulation) -> String {
         0 => String::new(),
         products => format!(", {products} Krylov products"),
     };
-    let mut text = format!(
-        "{}: {} s by {} in {} steps ({} evaluations, {} Newton iterations, {} factorisations{products})\n  \
+    let is_rest = simulation.at.is_rest();
+    let mut text = match is_rest {
+        true => format!("{}: at rest\n", problem.name),
+        false => format!(
+            "{}: {} s by {} in {} steps ({} evaluations, {} Newton iterations, {} factorisations{products})\n  \
          method: {}\n",
-        problem.name,
-        (run.duration * 1e9).round() / 1e9,
-        run.method.name(),
-        run.grid.steps(),
-        counts.evaluations,
-        counts.newton_iterations,
-        counts.factorisations,
-        simulation.reason
-    );
+            problem.name,
+            (run.duration * 1e9).round() / 1e9,
+            run.method.name(),
+            run.grid.steps(),
+            counts.evaluations,
+            counts.newton_iterations,
+            counts.factorisations,
+            simulation.reason
+        ),
+    };
     if let Some(warning) = &simulation.warning {
         let _ = writeln!(text, "  warning: {warning}");
     }
@@ -238,7 +254,8 @@ fn summary(problem: &Problem, simulation: &Simulation) -> String {
         let _ = writeln!(text, "  note: {note}");
     }
     for note in driver::start::notes(problem, &simulation.at.x) {
-        let _ = writeln!(text, "  start: {note}");
+        let what = if is_rest { "note" } else { "start" };
+        let _ = writeln!(text, "  {what}: {note}");
     }
     if simulation.unlowered {
         text.push_str("  integrated as written: this design does not admit the lowering\n");
@@ -262,10 +279,13 @@ fn summary(problem: &Problem, simulation: &Simulation) -> String {
         let unit = with_space(Some(&problem.function_unit(f)));
         let _ = write!(text, "  {name:width$}  {:>16.9e}{unit}", found.value);
         if let Some(Maximum { value, time, error }) = found.maximum {
-            let _ = write!(
-                text,
-                "  true maximum {value:.9e}{unit} at t = {time:.6} s (± {error:.0e}"
-            );
+            let _ = match is_rest {
+                true => write!(text, "  true maximum {value:.9e}{unit} (± {error:.0e}"),
+                false => write!(
+                    text,
+                    "  true maximum {value:.9e}{unit} at t = {time:.6} s (± {error:.0e}"
+                ),
+            };
             let at = &simulation.at;
             match ungated_maximum(&at.scene.functions[f], &at.scene.model, &at.run) {
                 Some(free) => {
@@ -280,6 +300,14 @@ fn summary(problem: &Problem, simulation: &Simulation) -> String {
     let (first, last) = (&simulation.observations[0], simulation.observations.last());
     let energy = first.kinetic + first.potential;
     let (position, velocity) = simulation.constraint_drift();
+    if is_rest {
+        let _ = writeln!(
+            text,
+            "  energy {energy:.6e} J; left: acceleration {:.1e} m/s^2, gaps of joints {position:.1e} m",
+            simulation.unbalanced()
+        );
+        return text;
+    }
     let _ = writeln!(
         text,
         "  energy {energy:.6e} J, {} {:.2e} J; constraints: position {position:.1e}, \

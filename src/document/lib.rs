@@ -23,7 +23,7 @@ pub mod structures;
 pub mod windows;
 
 use drives::Drive;
-use flexbody_mechanics::system::equilibrium::KnownStarts;
+use flexbody_mechanics::system::equilibrium::{KnownStarts, Sought};
 use functions::{Function, Instant, WhichFunction};
 use indexmap::IndexMap;
 use joints::Joint;
@@ -53,7 +53,11 @@ pub const VERSION: u64 = 1;
     extend(
         "if" = {"required": ["structures"]},
         "then" = {"required": ["materials"]},
-        "else" = {"required": ["bodies", "simulation"]}
+        "else" = {
+            "required": ["bodies"],
+            "if": {"properties": {"analysis": {"const": "rest"}}, "required": ["analysis"]},
+            "else": {"required": ["simulation"]}
+        }
     )
 )]
 pub struct Document {
@@ -93,6 +97,9 @@ pub struct Document {
     /// Bodies by name.
     #[serde(default)]
     pub bodies: IndexMap<String, Body>,
+    /// What is computed of a machine of bodies: its motion (default), or where it rests under gravity and loads. Structures
+    /// are always at rest.
+    pub analysis: Option<Analysis>,
     /// Deformations of flexible bodies at the start, default "given".
     #[serde(default)]
     pub start: flexible::Start,
@@ -151,6 +158,16 @@ pub struct Document {
     pub _defaults: Defaults,
 }
 
+/// What is computed of a machine.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Deserialize, JsonSchema)]
+#[serde(rename_all = "snake_case")]
+pub enum Analysis {
+    /// Its motion over time.
+    Motion,
+    /// Where it rests: without velocity and acceleration, drives and loads held as they are at t = 0.
+    Rest,
+}
+
 /// Default tolerance of the input.
 const INPUT_TOLERANCE: f64 = 1e-5;
 
@@ -158,6 +175,20 @@ impl Document {
     /// The tolerance of the input, relative.
     pub fn input_tolerance(&self) -> f64 {
         self.input_tolerance.unwrap_or(INPUT_TOLERANCE)
+    }
+
+    /// Whether a machine of bodies is at rest.
+    pub fn is_rest(&self) -> bool {
+        self.analysis == Some(Analysis::Rest) && self.structures.is_empty()
+    }
+
+    /// What is sought before the functions are evaluated or the motion begins, if anything.
+    pub fn sought(&self) -> Option<Sought> {
+        match (self.start, self.is_rest()) {
+            (flexible::Start::Placed, _) | (flexible::Start::Given, false) => None,
+            (_, true) => Some(Sought::Rest),
+            (flexible::Start::Equilibrium, false) => Some(Sought::Start),
+        }
     }
 }
 
@@ -204,6 +235,27 @@ pub struct Simulation {
     pub method: Option<Method>,
     /// How the linear systems of bodies of finite elements are solved, default direct.
     pub linear_solver: Option<LinearSolver>,
+}
+
+impl Simulation {
+    /// That of a machine at rest: no step. Nothing depends on its duration.
+    fn of_rest() -> Self {
+        Self {
+            duration: Quantity::fixed(1.0),
+            until: None,
+            steps: Some(0),
+            tolerance: None,
+            samples: None,
+            seconds: None,
+            method: Some(Method::Dop853),
+            linear_solver: None,
+        }
+    }
+
+    /// Whether it is that of a machine at rest.
+    pub fn is_of_rest(&self) -> bool {
+        self.steps == Some(0)
+    }
 }
 
 /// How linear systems are solved.
@@ -433,10 +485,15 @@ pub enum View {
 /// # Errors
 /// The keys and indices that lead to the fault, and what is wrong there.
 pub fn read(json: &serde_json::Value) -> Result<Document, (Vec<String>, String)> {
-    serde_path_to_error::deserialize(json).map_err(|error| {
+    let read: Result<Document, _> = serde_path_to_error::deserialize(json);
+    let mut document = read.map_err(|error| {
         let path = error.path().iter().map(ToString::to_string).collect();
         (path, error.inner().to_string())
-    })
+    })?;
+    if document.is_rest() && document.simulation.is_none() {
+        document.simulation = Some(Simulation::of_rest());
+    }
+    Ok(document)
 }
 
 /// The JSON Schema of a problem file: `unit` is a number's unit. `design_variable` is true where a

@@ -363,6 +363,9 @@ impl Simulated {
         let Self::Motion(end) = self else {
             return None;
         };
+        if end.at.is_rest() {
+            return None;
+        }
         Some(IntegrationRecord {
             method: end.at.run.method.name(),
             reason: end.reason.clone(),

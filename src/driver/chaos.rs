@@ -59,7 +59,7 @@ pub fn chaos(problem: &Problem, x: &[f64]) -> Option<Chaos> {
 
 /// As [`chaos`], of a design that was simulated, judged by the functions `which`.
 pub fn of_motion(problem: &Problem, at: &Evaluated, which: &[usize]) -> Option<Chaos> {
-    if at.x.is_empty() || which.is_empty() {
+    if at.x.is_empty() || which.is_empty() || at.is_rest() {
         return None;
     }
     // Gradients that cannot be computed are suspicious too.

@@ -51,6 +51,9 @@ fn of_scene(
     which: &[usize],
     gradients: bool,
 ) -> Result<Vec<FunctionError>, IntegrationFailure> {
+    if at.is_rest() {
+        return without_steps(problem, at, which, gradients);
+    }
     let sums = |f: &usize| looks_at_the_whole(&at.scene.functions[*f]);
     let summed: Vec<usize> = which.iter().copied().filter(sums).collect();
     let cells = at.run.has_cells;
@@ -162,6 +165,35 @@ fn of_scene(
         });
     }
     Ok(all)
+}
+
+/// At rest there is no step, and no error of steps.
+fn without_steps(
+    problem: &Problem,
+    at: &Evaluated,
+    which: &[usize],
+    gradients: bool,
+) -> Result<Vec<FunctionError>, IntegrationFailure> {
+    let exact = |value: f64| Estimate {
+        value,
+        error: 0.0,
+        of_steps: 0.0,
+        of_samples: 0.0,
+    };
+    let rows = match gradients && !problem.variables.is_empty() {
+        true => at.gradients(problem, which)?.0,
+        false => vec![Vec::new(); which.len()],
+    };
+    let one = |(&function, row): (&usize, Vec<f64>)| {
+        let found = at.function(function);
+        FunctionError {
+            function,
+            value: exact(found.value),
+            maximum: found.maximum.map(|own| exact(own.value)),
+            gradient: row.into_iter().map(exact).collect(),
+        }
+    };
+    Ok(which.iter().zip(rows).map(one).collect())
 }
 
 /// Raises errors that vanish by chance, where the error changes its sign with the step: the relative error of a

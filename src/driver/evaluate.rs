@@ -101,6 +101,11 @@ impl Evaluated {
         Ok((at, refresh))
     }
 
+    /// Whether the machine is at rest: its motion is one instant.
+    pub fn is_rest(&self) -> bool {
+        self.run.last() == 0
+    }
+
     /// The same design with another motion.
     pub fn with_run(&self, scene: Scene<f64>, run: Trajectory<f64>) -> Self {
         Self {
@@ -348,7 +353,7 @@ impl Evaluated {
         };
         let mut all = vec![Vec::with_capacity(self.x.len()); count];
         for i in 0..self.x.len() {
-            let moved = parameter_derivatives(problem, &self.x, i);
+            let moved = parameter_derivatives(problem, &self.x, i)?;
             let rows = by_parameters.iter().zip(&sizes);
             for (gradient, (by, sizes)) in all.iter_mut().zip(rows) {
                 let mut sum = Derivative::default();
@@ -384,16 +389,22 @@ fn along_event(function: &Scene<f64>, event: &Scene<f64>) -> (Scene<f64>, Scene<
 }
 
 /// Derivative of every parameter of the scene in variable i.
-fn parameter_derivatives(problem: &Problem, x: &[f64], i: usize) -> Vec<f64> {
+///
+/// # Errors
+/// The start has no derivative, as of a machine at rest that nothing holds against a change.
+fn parameter_derivatives(
+    problem: &Problem,
+    x: &[f64],
+    i: usize,
+) -> Result<Vec<f64>, IntegrationFailure> {
     let x: Vec<Dual> = x
         .iter()
         .enumerate()
         .map(|(j, &value)| Dual::new(value, if i == j { 1.0 } else { 0.0 }))
         .collect();
-    problem
-        .scene(&x)
-        .parameters()
-        .into_iter()
-        .map(|p| p.du)
-        .collect()
+    let scene = problem.scene(&x);
+    if let Some(failure) = scene.unstarted {
+        return Err(IntegrationFailure::Assembly(failure));
+    }
+    Ok(scene.parameters().into_iter().map(|p| p.du).collect())
 }

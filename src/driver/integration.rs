@@ -112,6 +112,7 @@ impl Integration {
             (Some(samples), Spacing::Steps(_)) if sums || !ends => Samples::Uniform(samples),
             (Some(samples), Spacing::Steps(_)) => Samples::Quadrature(samples),
             (None, Spacing::Steps(_)) if seen || sums || ends => Samples::StepEnds,
+            (None, Spacing::Steps(0)) => Samples::StepEnds,
             (None, Spacing::Steps(_)) => Samples::Uniform(1),
             _ if !summed.is_empty() => Samples::Quadrature(if seen { shown } else { 0 }),
             _ if seen => Samples::Uniform(shown),

@@ -86,7 +86,10 @@ pub(super) fn record(
         lower_bounds: bounds(&outcome.multipliers.lower_bounds),
         upper_bounds: bounds(&outcome.multipliers.upper_bounds),
     };
-    warnings.extend(notes_of_start(problem, &problem.start()));
+    warnings.extend(match problem.is_rest() {
+        true => notes_of_start(problem, &x),
+        false => notes_of_start(problem, &problem.start()),
+    });
     if let Some(end) = end {
         let constrained = problem.constraints.iter().map(|c| c.function);
         let mut used: Vec<usize> = constrained.chain([objective.function]).collect();

@@ -112,6 +112,15 @@ impl Simulation {
         energy_drift(&self.observations)
     }
 
+    /// Largest acceleration \[m/s²\] of a body's origin that is left at rest.
+    pub fn unbalanced(&self) -> f64 {
+        let (run, model) = (self.motion(), &self.written.model);
+        let of_body = |six: &[f64]| six[..3].iter().map(|a| a * a).sum::<f64>().sqrt();
+        let all = run.a(0).chunks_exact(6).enumerate();
+        let seen = all.filter(|(body, _)| !model.is_internal(*body));
+        seen.map(|(_, six)| of_body(six)).fold(0.0, f64::max)
+    }
+
     /// Largest position and velocity constraint violations.
     pub fn constraint_drift(&self) -> (f64, f64) {
         constraint_drift(&self.observations)

@@ -21,6 +21,7 @@ const NEARLY: f64 = 1e-4;
 /// there is none.
 pub fn notes(problem: &Problem, x: &[f64]) -> Vec<String> {
     match problem.without_equilibrium() {
+        Some(_) if problem.is_rest() => of_rest(problem, x),
         Some(placed) => {
             let mut notes = of_placement(&placed, x, " before equilibrium is sought");
             notes.extend(unstable(problem, x));
@@ -30,6 +31,37 @@ pub fn notes(problem: &Problem, x: &[f64]) -> Vec<String> {
         }
         None => of_placement(problem, x, ""),
     }
+}
+
+/// Notes on a machine at rest: whether it would stay there.
+fn of_rest(problem: &Problem, x: &[f64]) -> Vec<String> {
+    let Some(stability) = problem.stability_at_rest(x) else {
+        return Vec::new();
+    };
+    let unstable = stability.growth.map(|growth| {
+        format!(
+            "the rest is not stable: a disturbance grows by a factor of e in {:.1e} s",
+            1.0 / growth
+        )
+    });
+    let free = (!stability.free.is_empty()).then(|| {
+        let mut names = stability.free;
+        let more = names.len().saturating_sub(MOST);
+        names.truncate(MOST);
+        if more > 0 {
+            names.push(format!("{more} more"));
+        }
+        format!(
+            "the rest is neutral: {} can move without a force, and stay as placed",
+            names.join(", ")
+        )
+    });
+    let snapped = stability.snapped.then(|| {
+        "the way from the placement leads through positions that are not stable, as of an arch that snaps through: this \
+         rest may change suddenly with the design; place the bodies nearer to it"
+            .to_owned()
+    });
+    unstable.into_iter().chain(free).chain(snapped).collect()
 }
 
 /// A start in equilibrium from which a disturbance grows, as that of a column that buckles.

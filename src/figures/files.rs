@@ -7,6 +7,7 @@ use super::elastic_figures::{
     SEEN, colours, deflections, displaced, elastic, has_stress, keep_the_largest, limits, patches,
     stresses,
 };
+use super::error::FigureError;
 use super::fits::curves;
 use super::flight::release;
 use super::shells;
@@ -98,6 +99,10 @@ fn figures(
     if let Some(drawing) = drawings.last() {
         all.push(("motion.svg", motion(&lapses, &scenery(drawing))));
     }
+    // At rest there is nothing over time.
+    if problem.is_rest() {
+        return drawn(all);
+    }
     let energies: Vec<EnergyRun> = designs
         .iter()
         .map(|(title, design)| energies(title, design))
@@ -138,6 +143,11 @@ fn figures(
         let label = format!("largest stress [Pa]{some}");
         all.push(("stress.svg", histories(&[(&label, stressed)])));
     }
+    drawn(all)
+}
+
+/// The figures that are not empty.
+fn drawn(all: Vec<(&'static str, Result<String, FigureError>)>) -> Vec<NamedFile> {
     all.into_iter()
         .filter_map(|(name, svg)| Some((name, svg.ok()?.into_bytes())))
         .collect()
@@ -205,7 +215,7 @@ fn lapse(
     let latest = shown.len() - 1;
     let flat = |p: &Vec3<f64>| drawing.flat(p);
     let (oblique, sight) = (drawing.is_oblique(), drawing.sight());
-    let snapshots = drawing.snapshots.clamp(2, latest.max(1) + 1);
+    let snapshots = drawing.snapshots.min(latest + 1);
     let instants: Vec<usize> = (0..snapshots)
         .map(|i| match i + 1 == snapshots {
             true => end,

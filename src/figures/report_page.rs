@@ -154,7 +154,7 @@ fn share_scales(stages: &mut [Stage]) {
 
 /// Curves of a motion against time: functions of interest, energies, stresses, displacements.
 fn curves(problem: &Problem, motions: &[Shown]) -> Vec<Chart> {
-    if motions.is_empty() {
+    if motions.is_empty() || problem.is_rest() {
         return Vec::new();
     }
     let chart = |title: &str, up: &str, curves: Vec<Curve>| Chart {

@@ -212,6 +212,21 @@ fn cannot_assemble(failure: &AssemblyFailure) -> Finding {
             "gravity and loads that the flexible bodies bear with small deformations",
             "look at stiffnesses and loads, or start undeformed",
         ),
+        AssemblyFailure::NotHeld { .. } => (
+            "/bodies".to_owned(),
+            "joints, springs or drives that hold every body",
+            "hold what is free, or simulate its motion",
+        ),
+        AssemblyFailure::NoRest { .. } => (
+            "/analysis".to_owned(),
+            "gravity and loads under which the machine comes to rest",
+            "place the bodies nearer to where they rest; look at stiffnesses and loads",
+        ),
+        AssemblyFailure::MovedApart { body } => (
+            join("/bodies", body),
+            "places that are apart, or move together",
+            "start with the places apart",
+        ),
         AssemblyFailure::Singular => (
             "".to_owned(),
             "a scene whose equations have regular matrices in double precision",

@@ -137,14 +137,19 @@ pub(super) fn drives<S: Scalar>(
     name: &str,
 ) -> Vec<Drive<S>> {
     let of = |drive: &&WrittenDrive| drive.joint == name;
+    // A machine at rest holds its drives as they are at the start.
+    let course = |written: Written| match (course(assembly, written), document.is_rest()) {
+        (course, true) => TimeFunction::constant(course.value(S::zero())),
+        (course, false) => course,
+    };
     let parts = |drive: &WrittenDrive| {
         let turn = drive.turn.as_ref().map(|turn| Drive {
             dof: DegreeOfFreedom::Rotation,
-            course: course(assembly, turn.parts()),
+            course: course(turn.parts()),
         });
         let slide = drive.slide.as_ref().map(|slide| Drive {
             dof: DegreeOfFreedom::Translation,
-            course: course(assembly, slide.parts()),
+            course: course(slide.parts()),
         });
         turn.into_iter().chain(slide)
     };

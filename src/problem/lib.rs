@@ -94,7 +94,7 @@ use crate::optimiser::Method;
 use crate::structures::loads::Load;
 use crate::structures::quality::MeshFault;
 use crate::structures::structure::Structure;
-use crate::system::equilibrium;
+use crate::system::equilibrium::{self, Stability};
 use crate::system::left_out::Redundancy;
 use model::Model;
 use schema::{Document, View};
@@ -403,10 +403,9 @@ impl Problem {
     }
 
     /// The problem whose scene starts as its bodies are placed before equilibrium is sought; `None` if this one does not
-    /// start in equilibrium.
+    /// start in equilibrium and is not at rest.
     pub fn without_equilibrium(&self) -> Option<Self> {
-        let settles = self.written.start == schema::flexible::Start::Equilibrium;
-        settles.then(|| {
+        self.written.sought().map(|_| {
             let mut other = self.clone();
             other.written.start = schema::flexible::Start::Placed;
             other
@@ -440,6 +439,18 @@ impl Problem {
         let model = placed.as_placed(x);
         let found = equilibrium::growth(&model, &self.written.known_starts);
         found.ok().flatten()
+    }
+
+    /// Whether a machine of bodies is at rest: its functions are values there, and nothing is integrated.
+    pub fn is_rest(&self) -> bool {
+        self.written.is_rest()
+    }
+
+    /// The stability of a machine at rest; `None` if it is not at rest, or does not come to it.
+    pub fn stability_at_rest(&self, x: &[f64]) -> Option<Stability> {
+        let placed = self.without_equilibrium().filter(|_| self.is_rest())?;
+        let model = placed.as_placed(x);
+        equilibrium::stability(&model, &self.written.known_starts).ok()
     }
 
     /// By flexible body: name, and the vibration that the start in equilibrium leaves in it as a part of its deformation

@@ -74,7 +74,12 @@ pub(super) fn prune(document: &mut Map<String, Value>, findings: &[Finding]) -> 
     ];
     // Structures without a motion need neither bodies nor a simulation.
     let fixed = document.contains_key("structures") || damage.touches("structures");
-    let count = if fixed { 2 } else { required.len() };
+    let rests = document.get("analysis") == Some(&json!("rest"));
+    let count = match (fixed, rests) {
+        (true, _) => 2,
+        (false, true) => 3,
+        (false, false) => required.len(),
+    };
     for (key, value) in required.into_iter().take(count) {
         if !document.contains_key(key) {
             document.insert(key.to_owned(), value);

@@ -66,8 +66,8 @@ pub fn with_places<S: Scalar>(
         x,
     };
     count_turns(document, &builder, &mut model);
-    if document.start == Start::Equilibrium && unstarted.is_none() {
-        unstarted = settle(&mut model, &document.known_starts).err();
+    if let (Some(sought), None) = (document.sought(), &unstarted) {
+        unstarted = settle(&mut model, &document.known_starts, sought).err();
     }
     let mut functions: Vec<Function<S>> = document
         .functions
@@ -81,6 +81,8 @@ pub fn with_places<S: Scalar>(
         .as_ref()
         .map(|until| TerminalEvent::new(builder.quantity(&until.measure), until.reaches.get(x)));
     flexible.move_functions(&mut model, &mut functions, &mut until);
+    let apart = flexible.apart.take();
+    let unstarted = unstarted.or(apart.map(|body| AssemblyFailure::MovedApart { body }));
     let scene = Scene {
         model,
         duration: simulation.duration.get(x),

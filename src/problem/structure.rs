@@ -158,15 +158,7 @@ impl<'a> Walker<'a> {
                 }
             }
         }
-        let has = |key: &Value| key.as_str().is_some_and(|key| object.contains_key(key));
-        let condition = schema["if"]["required"].as_array();
-        let branch = condition.map(|keys| match keys.iter().all(has) {
-            true => &schema["then"]["required"],
-            false => &schema["else"]["required"],
-        });
-        let required = [Some(&schema["required"]), branch].into_iter().flatten();
-        for key in required.filter_map(Value::as_array).flatten() {
-            let key = key.as_str().unwrap_or_default();
+        for key in required(schema, object) {
             // A misspelt key is not missing.
             if !object.contains_key(key) && !misspelt.contains(&key) {
                 let wanted = self.wanted(&schema["properties"][key]);
@@ -307,9 +299,7 @@ impl<'a> Walker<'a> {
                 format!("a list{} {what}", count.unwrap_or_else(|| " of".into()))
             }
             _ => {
-                let usual = [&schema["required"], &schema["else"]["required"]];
-                let keys = usual.into_iter().filter_map(Value::as_array).flatten();
-                let keys: Vec<&str> = keys.filter_map(Value::as_str).collect();
+                let keys = required(schema, &Map::new());
                 match keys.is_empty() {
                     true => "an object".into(),
                     false => format!("an object with {}", keys.join(", ")),
@@ -317,6 +307,22 @@ impl<'a> Walker<'a> {
             }
         }
     }
+}
+
+/// The keys that an object needs: `required`, and what its conditions add.
+fn required<'s>(schema: &'s Value, object: &Map<String, Value>) -> Vec<&'s str> {
+    let own = schema["required"].as_array().into_iter().flatten();
+    let mut keys: Vec<&str> = own.filter_map(Value::as_str).collect();
+    let condition = &schema["if"];
+    if condition.is_object() {
+        let has = |key: &str| object.contains_key(key);
+        let equal = |(key, property): (&String, &Value)| object.get(key) == property.get("const");
+        let mut values = condition["properties"].as_object().into_iter().flatten();
+        let holds = required(condition, object).into_iter().all(has) && values.all(equal);
+        let branch = if holds { "then" } else { "else" };
+        keys.extend(required(&schema[branch], object));
+    }
+    keys
 }
 
 /// Describes limits and unit of a number.

@@ -205,7 +205,11 @@ impl Explanation {
             let _ = writeln!(text, "  last, as they close loops: {closing}");
         }
         text.push_str("\nintegration\n");
-        if let Some(found) = &self.integration {
+        if let Some(found) = &self.integration
+            && found.steps == 0
+        {
+            text.push_str("  none: the machine is at rest\n");
+        } else if let Some(found) = &self.integration {
             let _ = writeln!(
                 text,
                 "  {} in {} steps: {}\n  memory: {} for the samples, {} for gradients",

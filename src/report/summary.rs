@@ -88,9 +88,11 @@ fn objective(optimum: &Optimum) -> String {
     if let Some(value) = objective.true_value {
         text.push_str(&true_value("", value, objective.value, &unit));
     }
-    let source = match is_at_rest(optimum) {
-        false => "steps and samples",
-        true => "the mesh",
+    let of_structures = optimum.problem.document.get("structures").is_some();
+    let source = match (is_at_rest(optimum), of_structures) {
+        (false, _) => "steps and samples",
+        (true, true) => "the mesh",
+        (true, false) => "Newton's method",
     };
     if let Some(error) = objective.estimated_error
         && is_rounding(error, objective.value)

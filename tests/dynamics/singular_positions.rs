@@ -115,3 +115,18 @@ fn parallelograms_in_gravity_move_as_pendulums() {
     }
     assert!(passages > 10, "{passages}");
 }
+
+/// A linkage that locks in some designs, at any length of its coupler: it moves, or the failure says why.
+#[test]
+fn a_linkage_that_locks_moves_or_says_why() {
+    let text = include_str!("../../problems/extreme/locking_linkage.json");
+    let problem = Problem::parse(text, "locking_linkage.json", &[]).expect("a problem");
+    let mut moved = 0;
+    for k in 0..200 {
+        match simulate(&problem, &[-10.0 + 0.1 * f64::from(k)]) {
+            Ok(_) => moved += 1,
+            Err(failure) => assert!(failure.to_string().len() > 20, "{k}: {failure}"),
+        }
+    }
+    assert!((10..190).contains(&moved), "{moved}");
+}

@@ -34,6 +34,7 @@ mod held_edges;
 mod last_modes;
 mod lateral;
 mod layers;
+mod machines_at_rest;
 mod modal;
 mod modal_faults;
 mod modal_scenes;

@@ -355,6 +355,9 @@ impl Grid {
 
     /// The grid with every step halved; each half has as many cells.
     pub fn halved(&self) -> Self {
+        if self.steps() == 0 {
+            return self.clone();
+        }
         let mut ends = vec![0.0];
         for pair in self.ends.windows(2) {
             ends.extend([0.5 * (pair[0] + pair[1]), pair[1]]);

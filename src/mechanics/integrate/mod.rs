@@ -65,6 +65,9 @@ fn simulate_watching<S: SolveScalar>(
     settings: &Settings,
     watch: Watch,
 ) -> Result<Trajectory<S>, IntegrationFailure> {
+    if settings.spacing.is_rest() {
+        return rest(model, duration, settings);
+    }
     if !(duration.is_finite() && duration.re() > 0.0) {
         return Err(IntegrationFailure::Duration {
             duration: duration.re(),
@@ -84,6 +87,24 @@ fn simulate_watching<S: SolveScalar>(
     run.limits = settings.limits.clone();
     run.counts.factorisations += saddle.factorisations;
     run.counts.solves += saddle.factorisations;
+    Ok(run)
+}
+
+/// The single instant of a machine that is placed at rest.
+fn rest<S: SolveScalar>(
+    model: &Model<S>,
+    duration: S,
+    settings: &Settings,
+) -> Result<Trajectory<S>, IntegrationFailure> {
+    let numbering = Numbering::new(model);
+    let mut saddle = SaddlePoint::new(model, &numbering);
+    let start = initial::solve(model, &numbering, &mut saddle)?;
+    let tape = Tape::Explicit(explicit::Tape::none(&numbering));
+    let mut run = Trajectory::start(numbering, Method::Dop853, duration, start, tape);
+    (run.weights, run.moving) = (vec![1.0], vec![1.0]);
+    run.limits = settings.limits.clone();
+    run.counts.factorisations = saddle.factorisations;
+    run.counts.solves = saddle.factorisations;
     Ok(run)
 }
 

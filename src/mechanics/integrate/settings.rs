@@ -118,7 +118,7 @@ impl Method {
 /// Ends of the steps.
 #[derive(Clone, Debug, PartialEq)]
 pub enum Spacing {
-    /// This many steps of equal size.
+    /// This many steps of equal size; none at rest.
     Steps(usize),
     /// Adaptive steps: largest estimated error, relative to the scene's lengths and speeds.
     Tolerance(f64),
@@ -128,6 +128,15 @@ pub enum Spacing {
 }
 
 impl Spacing {
+    /// Whether there is no step: the machine is at rest.
+    pub fn is_rest(&self) -> bool {
+        match self {
+            Spacing::Steps(steps) => *steps == 0,
+            Spacing::Frozen(grid) => grid.steps() == 0,
+            Spacing::Tolerance(_) => false,
+        }
+    }
+
     /// Whether the steps are given and equal, or equal between kinks: their accuracy is the user's
     /// choice.
     pub fn is_equal(&self) -> bool {

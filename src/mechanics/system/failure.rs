@@ -72,6 +72,26 @@ pub enum AssemblyFailure {
         /// Number of iterations.
         iterations: usize,
     },
+    /// Places on a flexible body that are the same at a design, but move apart with a variable.
+    #[error(
+        "no derivative: two places on \"{body}\" are the same at this design, and a variable moves them apart"
+    )]
+    MovedApart {
+        /// The body.
+        body: String,
+    },
+    /// Nothing holds bodies in a position of rest.
+    #[error("the machine does not come to rest: nothing holds {bodies} against gravity and loads")]
+    NotHeld {
+        /// Names of the bodies that can move without stiffness.
+        bodies: String,
+    },
+    /// The damped motion finds no rest.
+    #[error("no position of rest is found near the placement, stopped at iteration {iterations}")]
+    NoRest {
+        /// Number of iterations.
+        iterations: usize,
+    },
     /// The equations are singular or not finite for another reason.
     #[error(
         "the equations of motion are singular to working precision at this placement, though joints \

@@ -106,6 +106,9 @@ fn loose_bodies(model: &Model<f64>) -> Vec<usize> {
 /// that inertia M and rows G leave free, M u = 0 and G u = 0.
 fn without_inertia(model: &Model<f64>, g: &DMatrix<f64>) -> AssemblyFailure {
     let loose = loose_bodies(model);
+    if loose.is_empty() {
+        return AssemblyFailure::Singular;
+    }
     let length = length_scale(model);
     let moments = |body: &RigidBody<f64>| body.inertia / (length * length);
     let largest = (model.bodies.iter()).fold(0.0_f64, |largest, body| {

@@ -6,8 +6,8 @@ use crate::mass::{mass_properties, volume};
 use crate::placement::{GROUND, placement_order};
 use crate::pointer::join;
 use crate::quantity::Quantity;
-use crate::schema::flexible::Start;
 use crate::schema::mechanics::{Body, Location, Place, Shape, Turns};
+use crate::system::equilibrium::Sought;
 
 impl Checker<'_> {
     pub(super) fn mechanics(&mut self) {
@@ -53,11 +53,12 @@ impl Checker<'_> {
 
     /// Checks that a start in equilibrium has flexible bodies, and that these give no other.
     fn start_of_deformations(&mut self) {
-        if self.document.start != Start::Equilibrium {
+        let Some(sought) = self.document.sought() else {
             return;
-        }
+        };
         let bodies = &self.document.bodies;
-        if !bodies.values().any(Body::is_flexible) && !self.damage.touches("bodies") {
+        let flexible = sought == Sought::Rest || bodies.values().any(Body::is_flexible);
+        if !flexible && !self.damage.touches("bodies") {
             let found = "a start in equilibrium without a flexible body";
             let finding = Finding::new("/start", found, "a beam, shells or a modal body");
             self.fault(finding);

@@ -8,6 +8,7 @@ mod loads;
 mod mechanics;
 mod modal;
 mod properties;
+mod rest;
 mod sections;
 mod sets;
 mod structures;
@@ -36,6 +37,7 @@ pub(super) fn check(document: &Document, damage: &Damage) -> Vec<Finding> {
     checker.loads();
     checker.drives();
     checker.structures();
+    checker.analysis();
     checker.study();
     checker.findings
 }

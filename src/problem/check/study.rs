@@ -76,6 +76,9 @@ impl Checker<'_> {
         if self.damage.touches("simulation") {
             return;
         }
+        if simulation.is_of_rest() {
+            return;
+        }
         if let Some(until) = &simulation.until {
             self.instant("/simulation/until/measure", &until.measure);
         }
@@ -164,6 +167,9 @@ impl Checker<'_> {
             self.fault(Finding::new(pointer, "a function of structures", expected));
             return;
         };
+        if self.document.is_rest() {
+            self.at_rest(pointer, &function);
+        }
         match function {
             OfMotion::Clearance(clearance) => {
                 self.clearance(&format!("{pointer}/clearance"), clearance);

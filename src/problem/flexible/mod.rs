@@ -16,12 +16,13 @@ use crate::math::{Scalar, Vec3};
 use crate::model::finite::FiniteElements;
 use crate::model::flexible::Modes;
 use crate::model::flexible::{Form, Inertia, Modal};
-use crate::model::{ConstraintRow, JointFrame, LoadKind, Model};
+use crate::model::{ConstraintRow, JointFrame, LoadKind, Model, RigidBody};
 use crate::prepared::Prepared;
 use crate::schema::Document;
 use crate::schema::elements::ElementInertia;
 use crate::schema::loads::Load;
 use crate::structures::floating::{NodeMotion, PointMotion};
+use crate::system::placement::length_scale;
 use shapes::{Shapes, Weighed, start, weighed};
 use std::sync::Arc;
 
@@ -66,6 +67,24 @@ struct Interface<S> {
     body: usize,
 }
 
+/// Points of a body are the same up to this distance, relative to the length scale. Their real parts decide, so that a scene
+/// and its derivatives have the same bodies.
+const SAME: f64 = 1e-12;
+
+fn is_same<S: Scalar>(model: &Model<S>, [p, q]: [&Vec3<S>; 2]) -> bool {
+    let apart = (p - q).map(|x| x.re().abs()).max();
+    apart == 0.0 || apart <= SAME * length_scale(model)
+}
+
+/// Whether points that are the same differ in their infinitesimal parts by more than round-off: a variable moves them apart.
+fn part_company<S: Scalar>(frame: &RigidBody<S>, length: f64, [p, q]: [&Vec3<S>; 2]) -> bool {
+    let size = |v: &Vec3<S>| v.map(|x| x.infinitesimal().abs()).max();
+    let turned = frame.orientation.iter();
+    let turned = turned.fold(0.0_f64, |most, x| most.max(x.infinitesimal().abs()));
+    let moved = size(&frame.position) + length * turned + size(p) + size(q);
+    size(&(p - q)) > 1e-9 * moved
+}
+
 /// What holds a point of a body, by its number in the document.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Holder {
@@ -92,6 +111,8 @@ pub struct FlexibleBodies<S> {
     interfaces: Vec<Interface<S>>,
     /// The places that joints, loads and functions hold.
     pub places: Vec<HeldPlace<S>>,
+    /// A body on which a variable moves two places apart that are the same at this design.
+    pub apart: Option<String>,
 }
 
 /// The numbers of the flexible bodies of a document, each kind in the order of the bodies.
@@ -171,6 +192,7 @@ impl<S: Scalar> FlexibleBodies<S> {
             shells: Vec::new(),
             interfaces: Vec::new(),
             places: Vec::new(),
+            apart: None,
         };
         let bodies = document.bodies.values().enumerate();
         let meshed = bodies.filter_map(|(frame, body)| Some((frame, body.elements.as_ref()?)));
@@ -262,8 +284,12 @@ impl<S: Scalar> FlexibleBodies<S> {
         let elastic = self.bodies.iter().find(|elastic| elastic.frame == body)?;
         let flexible = elastic.flexible;
         let known = (self.interfaces.iter())
-            .find(|known| known.flexible == flexible && known.point == point);
+            .find(|known| known.flexible == flexible && is_same(model, [&known.point, &point]));
         if let Some(known) = known {
+            let frame = &model.bodies[body];
+            if part_company(frame, length_scale(model), [&known.point, &point]) {
+                self.apart = Some(frame.name.clone());
+            }
             return Some(known.body);
         }
         let modes = elastic.shapes.point(point);

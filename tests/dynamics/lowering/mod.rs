@@ -137,7 +137,8 @@ const BDF: Method = Method::Bdf {
 /// (`benchmarks.rs` runs them through it with reductions).
 #[test]
 fn every_problem_moves_the_same_lowered() {
-    let all: [(&str, bool, &[Method], f64); 17] = [
+    let all: [(&str, bool, &[Method], f64); 18] = [
+        ("desk_lamp", true, &[Method::Dop853], 1e-11),
         ("fit_pendulum", true, &[Method::Dop853, RADAU], 1e-11),
         ("quadruped", false, &[Method::Dop853, RADAU], 1e-11),
         ("straight_line", true, &[Method::Dop853, RADAU], 1e-11),
@@ -218,6 +219,7 @@ fn every_problem_moves_the_same_lowered() {
         assert_eq!(is_planar(&problem), planar, "{name}");
         for &method in methods {
             let spacing = match method.is_adaptive() {
+                _ if problem.is_rest() => Spacing::Steps(0),
                 true => {
                     let scene = problem.scene::<f64>(&problem.start());
                     let chosen = settings(method, Spacing::Tolerance(1e-6));

@@ -1,6 +1,6 @@
 //! The equations of the quasi-static start, and products with their derivative.
 
-use super::Given;
+use super::{Given, Sought};
 use crate::math::slices::{add_scaled, dot};
 use crate::math::{Dual, Parameters, Scalar};
 use crate::model::Model;
@@ -31,6 +31,9 @@ pub(super) struct State<S> {
     pub lambda: Vec<S>,
     pub sigma: Vec<S>,
     pub tau: Vec<S>,
+    /// Of rest: whether the way there led through positions that are not stable, and the rate \[1/s²\] of the placement.
+    pub snapped: bool,
+    pub rate: f64,
 }
 
 impl State<f64> {
@@ -43,6 +46,8 @@ impl State<f64> {
             lambda: all(&self.lambda),
             sigma: all(&self.sigma),
             tau: all(&self.tau),
+            snapped: self.snapped,
+            rate: self.rate,
         }
     }
 }
@@ -64,14 +69,14 @@ fn picked<S: Scalar>(indices: &[usize], x: &[S]) -> Vec<S> {
 }
 
 impl<'a> Layout<'a> {
-    /// That of a model at its placement.
+    /// That of a model at its placement. At rest nothing moves, and positions and reactions are the only unknowns.
     pub(super) fn new(
         model: &Model<f64>,
         numbering: &'a Numbering,
         left_out: &'a RedundantRows,
-        placed: &[f64],
+        (placed, sought): (&[f64], Sought),
     ) -> Self {
-        let mut moves = vec![true; numbering.unknowns()];
+        let mut moves = vec![sought == Sought::Start; numbering.unknowns()];
         for (carrier, k) in model.flexible.iter().flat_map(|body| body.places()) {
             moves[numbering.unknown(carrier) + k] = false;
         }
@@ -103,6 +108,11 @@ impl<'a> Layout<'a> {
         })
     }
 
+    /// Whether all bodies are at rest.
+    pub(super) fn is_rest(&self) -> bool {
+        self.rigid.is_empty()
+    }
+
     /// Number of unknowns.
     pub(super) fn order(&self) -> usize {
         self.groups()[5].end
@@ -117,6 +127,8 @@ impl<'a> Layout<'a> {
             lambda: vec![0.0; self.numbering.constraints()],
             sigma: vec![0.0; self.kept.len()],
             tau: vec![0.0; self.kept.len()],
+            snapped: false,
+            rate: 0.0,
         }
     }
 
@@ -156,7 +168,7 @@ impl<'a> Layout<'a> {
         })
     }
 
-    fn compressed<S: Scalar>(&self, mut x: Vec<S>) -> Vec<S> {
+    pub(super) fn compressed<S: Scalar>(&self, mut x: Vec<S>) -> Vec<S> {
         let n = reduce::compress(self.numbering, 1, &mut x);
         x.truncate(n);
         x

@@ -1,8 +1,9 @@
-//! The sparse matrix of the quasi-static start, without derivatives of M and G in the rows of rigid motions.
+//! The sparse matrix of the quasi-static start, without derivatives of M and G in the rows of rigid motions; and that of
+//! rest, [K + σ M̃, Gᵀ; G, 0] with the metric M̃ of [`RigidMetric`].
 
 use super::equations::{Layout, State};
 use crate::linalg::{Emit, KnownPivots, Pattern, SingularMatrix, SparseLu, SparseMatrix};
-use crate::model::Model;
+use crate::model::{Model, RigidBody};
 use crate::system::bodies::BodyMotion;
 use crate::system::emit_bodies::{Rates, emit_force_balance};
 use crate::system::flexible;
@@ -10,6 +11,7 @@ use crate::system::in_motion::InMotion;
 use crate::system::joints;
 use crate::system::kkt::{emit_gradients, emit_reaction_jacobian, emit_transposed_gradients};
 use crate::system::loads::{self, LoadEntries};
+use crate::system::placement::length_scale;
 use crate::system::reduce::emit_reduced;
 
 /// Parts of rows and columns in velocity numbering: positions, accelerations, velocities.
@@ -28,7 +30,7 @@ impl Factors {
         let places = places(layout);
         let nodal = flexible::nodal_unknowns(model, layout.numbering);
         let pattern = Pattern::record(layout.order(), |emit: &mut dyn Emit<f64>| {
-            emit_chosen(&places, layout, (model, x), emit);
+            emit_chosen(&places, layout, (model, x, 0.0), emit);
         });
         let pattern = pattern.with_pivots(KnownPivots {
             short: Vec::new(),
@@ -41,7 +43,7 @@ impl Factors {
         }
     }
 
-    /// Makes the factors at a state. The layout is that of the plan.
+    /// Makes the factors at a state. The layout is that of the plan. At rest, `shift` is σ \[1/s²\].
     ///
     /// # Errors
     /// A singular matrix.
@@ -49,10 +51,10 @@ impl Factors {
         &mut self,
         layout: &Layout,
         model: &Model<f64>,
-        x: &State<f64>,
+        (x, shift): (&State<f64>, f64),
     ) -> Result<(), SingularMatrix> {
         let places = &self.places;
-        (self.matrix).assemble(|emit| emit_chosen(places, layout, (model, x), emit));
+        (self.matrix).assemble(|emit| emit_chosen(places, layout, (model, x, shift), emit));
         self.factors.factorise(&self.matrix)
     }
 
@@ -68,15 +70,41 @@ impl std::fmt::Debug for Factors {
     }
 }
 
+/// A metric of motions: that of the mass, regular where bodies have no mass or inertia.
+pub(super) struct RigidMetric {
+    mass: f64,
+    inertia: f64,
+}
+
+impl RigidMetric {
+    /// Part of the mean mass, and of its moment of inertia at the length scale, that a body has at least.
+    const LEAST: f64 = 1e-6;
+
+    pub(super) fn of(model: &Model<f64>) -> Self {
+        let mass: f64 = model.bodies.iter().map(|body| body.mass).sum();
+        let mean = mass / model.bodies.len().max(1) as f64;
+        let length = length_scale(model);
+        Self {
+            mass: Self::LEAST * mean,
+            inertia: Self::LEAST * mean * length * length,
+        }
+    }
+
+    /// Mass \[kg\] of a body, and the moment of inertia \[kg m²\] that it has in addition.
+    pub(super) fn of_body(&self, body: &RigidBody<f64>) -> [f64; 2] {
+        [body.mass + self.mass, self.inertia]
+    }
+}
+
 fn emit_chosen(
     places: &[Option<usize>],
     layout: &Layout,
-    (model, x): (&Model<f64>, &State<f64>),
+    at: (&Model<f64>, &State<f64>, f64),
     emit: &mut dyn Emit<f64>,
 ) {
     let mut chosen = Chosen { places, emit };
     emit_reduced(layout.numbering, PARTS, &mut chosen, |emit| {
-        emit_matrix(layout, model, x, emit);
+        emit_matrix(layout, at, emit);
     });
 }
 
@@ -133,7 +161,11 @@ impl Emit<f64> for OfRigid<'_> {
     }
 }
 
-fn emit_matrix(layout: &Layout, model: &Model<f64>, x: &State<f64>, emit: &mut dyn Emit<f64>) {
+fn emit_matrix(
+    layout: &Layout,
+    (model, x, shift): (&Model<f64>, &State<f64>, f64),
+    emit: &mut dyn Emit<f64>,
+) {
     let numbering = layout.numbering;
     let (nv, nc) = (numbering.velocities(), numbering.constraints());
     let (y, a, v, lambda) = (0, nv, 2 * nv, 3 * nv);
@@ -167,6 +199,17 @@ fn emit_matrix(layout: &Layout, model: &Model<f64>, x: &State<f64>, emit: &mut d
     emit_gradients(model, numbering, &gradients, (lambda, y), emit);
     for row in layout.left_out.numbers() {
         emit.add(lambda + row, lambda + row, 1.0);
+    }
+    if layout.is_rest() {
+        let metric = RigidMetric::of(model);
+        for (i, body) in model.bodies.iter().enumerate() {
+            let (o, [mass, inertia]) = (numbering.velocity(i), metric.of_body(body));
+            emit.add_identity(y + o, y + o, shift * mass);
+            emit.add_block(y + o + 3, y + o + 3, &(body.inertia * shift));
+            emit.add_identity(y + o + 3, y + o + 3, shift * inertia);
+        }
+        flexible::emit_mass(of, &motions, (y, y), shift, emit);
+        return;
     }
 
     let mut elastic = vec![false; 3 * nv];

@@ -1,4 +1,4 @@
-//! Quasi-static start: deformations without velocity and acceleration.
+//! Quasi-static start: deformations without velocity and acceleration; and rest, see [`rest`].
 //!
 //! Let rigid motions be those with all elastic coordinates at rest. Sought are positions q, rigid velocities v,
 //! rigid accelerations a and reactions λ with
@@ -19,8 +19,11 @@
 //! theorem, as in [`super::nearest`]. The matrix of these steps is exact by its products (dual numbers); the factors of
 //! a sparse one, without the derivatives of M and G in the rows of rigid motions, precondition it ([`gmres`]).
 
+mod descent;
 mod equations;
 mod matrix;
+mod rest;
+mod ritz;
 mod stability;
 mod unsteady;
 
@@ -37,6 +40,7 @@ use crate::math::{Parameters, Scalar};
 use crate::model::{Mobility, Model};
 use equations::{Layout, State};
 use matrix::Factors;
+pub use rest::{Stability, stability};
 pub use stability::growth;
 use std::sync::{Arc, Mutex};
 pub use unsteady::left_out;
@@ -55,6 +59,18 @@ const PRODUCTS: usize = 60;
 const ROUGH: usize = 1;
 const FINE: usize = 3;
 
+/// What is sought.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Sought {
+    /// The start of a motion: elastic coordinates at rest, rigid motions as placed.
+    Start,
+    /// Rest of the whole machine.
+    Rest,
+}
+
+/// Numbers that differ by less, relative to their size, are the same but for round-off; those below the second are absolute.
+const NEARBY: f64 = 1e-9;
+const SMALL: f64 = 1e-6;
 /// Number of starts that are kept.
 const KEPT: usize = 4;
 
@@ -70,11 +86,25 @@ struct Known {
 }
 
 impl KnownStarts {
-    /// The state of these numbers.
-    fn state(&self, numbers: &[f64]) -> Option<State<f64>> {
+    /// The state of these numbers, with them.
+    fn state(&self, numbers: &[f64]) -> Option<(Vec<f64>, State<f64>)> {
         let known = self.0.lock().ok()?;
-        let same = known.states.iter().find(|(own, _)| own == numbers);
-        same.map(|(_, state)| state.clone())
+        known.states.iter().find(|(own, _)| own == numbers).cloned()
+    }
+
+    /// The state of numbers that differ from these by round-off, as the real parts of others do. Where several equilibria
+    /// are near, it is the same one.
+    fn state_nearby(&self, numbers: &[f64]) -> Option<(Vec<f64>, State<f64>)> {
+        let known = self.0.lock().ok()?;
+        let apart = |own: &[f64]| match own.len() == numbers.len() {
+            true => own.iter().zip(numbers).fold(0.0_f64, |most, (a, b)| {
+                most.max((a - b).abs() / (a.abs() + b.abs() + SMALL))
+            }),
+            false => f64::INFINITY,
+        };
+        let all = known.states.iter().map(|own| (apart(&own.0), own));
+        let (apart, nearest) = all.min_by(|a, b| a.0.total_cmp(&b.0))?;
+        (apart < NEARBY).then(|| nearest.clone())
     }
 
     fn keep(&self, numbers: &[f64], state: &State<f64>) {
@@ -101,21 +131,31 @@ impl KnownStarts {
 }
 
 /// Moves the bodies of `model`, which are placed and undeformed, to the quasi-static start, and gives them velocities
-/// without vibration.
+/// without vibration; or to rest.
 ///
 /// # Errors
 /// Joints that cannot be closed, or no equilibrium.
-pub fn settle<S: Scalar>(model: &mut Model<S>, known: &KnownStarts) -> Result<(), AssemblyFailure> {
+pub fn settle<S: Scalar>(
+    model: &mut Model<S>,
+    known: &KnownStarts,
+    sought: Sought,
+) -> Result<(), AssemblyFailure> {
     let own = without_spin(model);
     let numbering = Numbering::new(&own);
-    let (state, v) = with_solution((&own, &numbering), known, |given, solver, found| {
+    let of = (&own, &numbering, sought);
+    let (state, v) = with_solution(of, known, |given, solver, found| {
         let layout = solver.layout;
         let mut state: State<S> = found.map(S::from);
         if S::INFINITESIMAL {
             let residual = layout.residual(&own, given, &state);
             let right: Vec<f64> = residual.iter().map(|x| -x.infinitesimal()).collect();
-            let change = solver
-                .with_factors(found, |factors| solver.change(factors, found, &right, FINE))?;
+            let change = solver.with_factors(found, |factors| {
+                let change = solver.change(factors, found, &right, FINE);
+                match sought {
+                    Sought::Start => Ok(change),
+                    Sought::Rest => solver.determined(factors, found, &right, change),
+                }
+            })??;
             let change: Vec<S> = change.into_iter().map(S::of_infinitesimal).collect();
             layout.advance(&mut state, &change);
         }
@@ -144,7 +184,7 @@ fn without_spin<S: Scalar>(model: &Model<S>) -> Model<S> {
 
 /// What `of` makes of the real solution for a model [`without_spin`], whose bodies are placed and undeformed.
 fn with_solution<S: Scalar, T>(
-    (own, numbering): (&Model<S>, &Numbering),
+    (own, numbering, sought): (&Model<S>, &Numbering, Sought),
     known: &KnownStarts,
     of: impl FnOnce(&Given<S>, &Solver, &State<f64>) -> Result<T, AssemblyFailure>,
 ) -> Result<T, AssemblyFailure> {
@@ -158,8 +198,8 @@ fn with_solution<S: Scalar, T>(
     redundancy::leave_out(&mut real);
     let left_out = RedundantRows::of(&real, numbering);
     let start = given.map(|x| x.re());
-    let layout = Layout::new(&real, numbering, &left_out, &start.q);
-    let solver = Solver {
+    let layout = Layout::new(&real, numbering, &left_out, (&start.q, sought));
+    let mut solver = Solver {
         layout: &layout,
         model: &real,
         given: &start,
@@ -168,9 +208,19 @@ fn with_solution<S: Scalar, T>(
         numbers,
         known,
     };
-    let found = match known.state(&solver.numbers) {
-        Some(found) => found,
-        None => solver.solve()?,
+    let kept = match S::INFINITESIMAL {
+        true => known.state_nearby(&solver.numbers),
+        false => known.state(&solver.numbers),
+    };
+    let found = match kept {
+        Some((numbers, found)) => {
+            solver.numbers = numbers;
+            found
+        }
+        None => match sought {
+            Sought::Start => solver.solve()?,
+            Sought::Rest => solver.rest()?,
+        },
     };
     of(&given, &solver, &found)
 }
@@ -227,7 +277,8 @@ impl Solver<'_> {
             Some(factors) => factors,
             None => {
                 let mut factors = Factors::plan(self.layout, self.model, found);
-                let made = factors.make(self.layout, self.model, found);
+                let shift = self.least_shift(found);
+                let made = factors.make(self.layout, self.model, (found, shift));
                 made.map_err(|_| AssemblyFailure::Singular)?;
                 factors
             }
@@ -246,7 +297,7 @@ impl Solver<'_> {
         for iteration in 1..=ITERATIONS {
             let residual = self.layout.residual(self.model, self.given, &x);
             let right: Vec<f64> = residual.iter().map(|x| -x).collect();
-            let made = factors.make(self.layout, self.model, &x);
+            let made = factors.make(self.layout, self.model, (&x, 0.0));
             made.map_err(|_| none(iteration))?;
             let change = self.change(&mut factors, &x, &right, ROUGH);
             if !change.iter().all(|x| x.is_finite()) {

@@ -10,7 +10,7 @@
 
 use super::equations::State;
 use super::matrix::Factors;
-use super::{FINE, Given, KnownStarts, Solver, with_solution, without_spin};
+use super::{FINE, Given, KnownStarts, Solver, Sought, with_solution, without_spin};
 use crate::math::slices::dot;
 use crate::math::{Dual, Parameters};
 use crate::model::{FlexibleBody, Model};
@@ -28,9 +28,11 @@ use crate::system::numbering::Numbering;
 pub fn left_out(model: &Model<f64>, known: &KnownStarts) -> Result<Vec<f64>, AssemblyFailure> {
     let own = without_spin(model);
     let numbering = Numbering::new(&own);
-    with_solution((&own, &numbering), known, |_, solver, found| {
-        solver.with_factors(found, |factors| solver.left_out(factors, found))
-    })
+    with_solution(
+        (&own, &numbering, Sought::Start),
+        known,
+        |_, solver, found| solver.with_factors(found, |factors| solver.left_out(factors, found)),
+    )
 }
 
 impl Solver<'_> {

@@ -1,0 +1,197 @@
+//! Rest of a whole machine: positions q and reactions λ with
+//!
+//! ```text
+//! −f(q, 0) + G(q)ᵀ λ = 0,     Φ(q) = 0
+//! ```
+//!
+//! by a descent ([`super::descent`]), its stability, and its derivative.
+
+use super::equations::State;
+use super::matrix::{Factors, RigidMetric};
+use super::ritz::ritz_vectors;
+use super::{KnownStarts, Solver, Sought, with_solution, without_spin};
+use crate::math::slices::{add_scaled, dot};
+use crate::model::Model;
+use crate::system::bodies::BodyMotion;
+use crate::system::failure::AssemblyFailure;
+use crate::system::numbering::Numbering;
+
+/// The smallest σ of factors, relative to the rate of the placement.
+pub(super) const FLOOR: f64 = 1e-6;
+/// A motion with a smaller stiffness, relative to the rate, is free.
+const FREE: f64 = 1e-10;
+/// A body takes part in a free motion if it moves by this part of the largest.
+const MOVES: f64 = 0.05;
+/// Largest part of the right side that the derivative of a solution leaves.
+const UNSOLVED: f64 = 1e-6;
+
+/// Whether rest is stable.
+#[derive(Clone, Debug, Default, PartialEq)]
+pub struct Stability {
+    /// The fastest growth \[1/s\] of a motion away from rest without damping, √−λ with K y = λ M̃ y; `None` if none grows.
+    pub growth: Option<f64>,
+    /// Names of bodies that can move without stiffness: rest is neutral, and they are where they were placed.
+    pub free: Vec<String>,
+    /// Whether the way from the placement led through positions that are not stable, as of an arch that snaps through.
+    pub snapped: bool,
+}
+
+/// The stability of rest of `model`, whose bodies are placed and undeformed.
+///
+/// # Errors
+/// If there is no rest.
+pub fn stability(model: &Model<f64>, known: &KnownStarts) -> Result<Stability, AssemblyFailure> {
+    let own = without_spin(model);
+    let numbering = Numbering::new(&own);
+    let of = |_: &_, solver: &Solver, found: &_| {
+        solver.with_factors(found, |factors| solver.stability(factors, found))?
+    };
+    with_solution((&own, &numbering, Sought::Rest), known, of)
+}
+
+impl Solver<'_> {
+    /// The smallest σ \[1/s²\] of factors at a solution.
+    pub(super) fn least_shift(&self, found: &State<f64>) -> f64 {
+        FLOOR * found.rate
+    }
+
+    /// The unknowns of the motion that grows fastest from an equilibrium; `None` if it is stable.
+    pub(super) fn growing(
+        &self,
+        factors: &mut Factors,
+        found: &State<f64>,
+    ) -> Result<Option<Vec<f64>>, AssemblyFailure> {
+        let soft = self.soft_motions(factors, found)?;
+        let least = soft.into_iter().min_by(|a, b| a.0.total_cmp(&b.0));
+        let growing = least.filter(|(stiffness, _)| *stiffness < -FREE * found.rate);
+        Ok(growing.map(|(_, mut along)| {
+            along.resize(self.layout.order(), 0.0);
+            along
+        }))
+    }
+
+    /// `change`, if it solves the equations for the right side; else positions do not follow from the numbers of the model.
+    ///
+    /// # Errors
+    /// Bodies that nothing holds against a change of loads.
+    pub(super) fn determined(
+        &self,
+        factors: &mut Factors,
+        found: &State<f64>,
+        right: &[f64],
+        change: Vec<f64>,
+    ) -> Result<Vec<f64>, AssemblyFailure> {
+        let along = self.layout.along(self.model, self.given, found);
+        let mut rest = along.product(&change);
+        rest.iter_mut().zip(right).for_each(|(r, b)| *r = b - *r);
+        let [.., lambda, _, _] = self.layout.groups();
+        // Reactions count as the positions that they change by the first shift.
+        let of_reactions = 1.0 / (self.mass * found.rate * self.scale);
+        let sizes = [rest, right.to_vec()].map(|mut x| {
+            factors.solve(&mut x);
+            let reactions = x[lambda.clone()].iter();
+            let largest = reactions.fold(0.0_f64, |most, x| most.max(x.abs()));
+            self.layout
+                .moved(&x, self.scale)
+                .max(of_reactions * largest)
+        });
+        if sizes[0] <= UNSOLVED * sizes[1] {
+            return Ok(change);
+        }
+        match self.stability(factors, found)?.free {
+            free if free.is_empty() => Err(AssemblyFailure::Singular),
+            free => Err(AssemblyFailure::NotHeld {
+                bodies: free.join(", "),
+            }),
+        }
+    }
+
+    /// The stability of a solution.
+    pub(super) fn stability(
+        &self,
+        factors: &mut Factors,
+        found: &State<f64>,
+    ) -> Result<Stability, AssemblyFailure> {
+        let mut out = Stability {
+            snapped: found.snapped,
+            ..Stability::default()
+        };
+        for (stiffness, y) in self.soft_motions(factors, found)? {
+            if stiffness < -FREE * found.rate {
+                let rate = (-stiffness).sqrt();
+                out.growth = Some(out.growth.map_or(rate, |other| other.max(rate)));
+            } else if stiffness <= FREE * found.rate {
+                self.name_moving(&y, &mut out.free);
+            }
+        }
+        Ok(out)
+    }
+
+    /// Motions y with K y = λ M̃ y on G y = 0 and their λ, those with λ below the least σ.
+    fn soft_motions(
+        &self,
+        factors: &mut Factors,
+        found: &State<f64>,
+    ) -> Result<Vec<(f64, Vec<f64>)>, AssemblyFailure> {
+        let layout = self.layout;
+        let n = layout.numbering.unknowns();
+        let motions = layout.at_rest(&found.q);
+        let weighted = |y: &[f64]| self.metric_product(&motions, y);
+        let shift = self.least_shift(found);
+        factors
+            .make(layout, self.model, (found, shift))
+            .map_err(|_| AssemblyFailure::Singular)?;
+        let softened = |y: &[f64]| {
+            let mut right = weighted(y);
+            right.resize(layout.order(), 0.0);
+            factors.solve(&mut right);
+            right.truncate(n);
+            right
+        };
+        // 1 / (λ + σ) is negative, or about 1 / σ and more, where λ is not positive.
+        let counts = |value: f64, _: f64| value < 0.0 || value * shift > 0.5;
+        let soft =
+            ritz_vectors(softened, weighted, (n, n), counts).ok_or(AssemblyFailure::Singular)?;
+        let along = layout.along(self.model, self.given, found);
+        let stiffness = |(_, y): (f64, Vec<f64>)| {
+            let mut change = y.clone();
+            change.resize(layout.order(), 0.0);
+            let held = &along.product(&change)[..n];
+            (dot(held, &y) / dot(&weighted(&y), &y), y)
+        };
+        Ok(soft.into_iter().map(stiffness).collect())
+    }
+
+    /// M̃ y, both for unknowns of velocity.
+    pub(super) fn metric_product(&self, motions: &[BodyMotion<f64>], y: &[f64]) -> Vec<f64> {
+        let layout = self.layout;
+        let metric = RigidMetric::of(self.model);
+        let mut out = layout.expanded(layout.mass_product(self.model, motions, y));
+        let y = layout.expanded(y.to_vec());
+        for (i, body) in self.model.bodies.iter().enumerate() {
+            let (o, [mass, inertia]) = (layout.numbering.velocity(i), metric.of_body(body));
+            add_scaled(&mut out[o..o + 3], mass - body.mass, &y[o..o + 3]);
+            add_scaled(&mut out[o + 3..o + 6], inertia, &y[o + 3..o + 6]);
+        }
+        layout.compressed(out)
+    }
+
+    /// Adds the names of bodies that a motion moves.
+    fn name_moving(&self, y: &[f64], names: &mut Vec<String>) {
+        let layout = self.layout;
+        let all = layout.expanded(y.to_vec());
+        let size = |i: usize| {
+            let six = &all[layout.numbering.velocity(i)..][..6];
+            let part = |x: &[f64]| dot(x, x).sqrt();
+            (part(&six[..3]) / self.scale).max(part(&six[3..]))
+        };
+        let bodies = || (0..self.model.bodies.len()).filter(|&i| !self.model.is_internal(i));
+        let largest = bodies().map(size).fold(0.0, f64::max);
+        for i in bodies().filter(|&i| size(i) > MOVES * largest) {
+            let name = &self.model.bodies[i].name;
+            if !names.contains(name) {
+                names.push(name.clone());
+            }
+        }
+    }
+}

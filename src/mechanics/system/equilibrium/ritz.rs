@@ -1,0 +1,98 @@
+//! Arnoldi's method for eigenvalues μ of A y = μ y, of largest size first.
+
+use crate::math::slices::{add_scaled, dot};
+use nalgebra::DMatrix;
+
+/// Largest dimension of the Krylov space.
+const DIMENSION: usize = 24;
+/// Largest residual |A y − μ y|, relative to |μ|, for |y| = 1 in the metric.
+const CONVERGED: f64 = 1e-2;
+/// Most iterations for the eigenvalues of a small matrix.
+const SWEEPS: usize = 1000;
+/// A vector lies in the space of those before if this part of it is left.
+const DEPENDENT: f64 = 1e-8;
+
+/// Real eigenvalues of a matrix of the order n, given by its products, that `counts(μ, largest |μ|)`, with their vectors
+/// of unit length in the metric that `weighted` multiplies with. At most `independent` are distinct. `None` if a product
+/// is not finite.
+pub(super) fn ritz_vectors(
+    mut product: impl FnMut(&[f64]) -> Vec<f64>,
+    weighted: impl Fn(&[f64]) -> Vec<f64>,
+    (n, independent): (usize, usize),
+    counts: impl Fn(f64, f64) -> bool,
+) -> Option<Vec<(f64, Vec<f64>)>> {
+    // Any vector has a part of each eigenvector.
+    let any: Vec<f64> = (0..n)
+        .map(|i| (1.0 + i as f64).sqrt().fract() - 0.5)
+        .collect();
+    let mut next = product(&any);
+    let mut basis: Vec<[Vec<f64>; 2]> = Vec::new();
+    let mut columns: Vec<Vec<f64>> = Vec::new();
+    loop {
+        let before = dot(&next, &weighted(&next)).sqrt();
+        let mut column = vec![0.0; basis.len()];
+        // Twice, so that round-off of the first pass goes.
+        for _ in 0..2 {
+            for (part, [y, with_metric]) in column.iter_mut().zip(&basis) {
+                let along = dot(with_metric, &next);
+                *part += along;
+                add_scaled(&mut next, -along, y);
+            }
+        }
+        let mut metric = weighted(&next);
+        let rest = dot(&next, &metric).sqrt();
+        if !rest.is_finite() {
+            return None;
+        }
+        column.push(rest);
+        if !basis.is_empty() {
+            columns.push(column);
+        }
+        if rest <= DEPENDENT * before || basis.len() == DIMENSION.min(independent) {
+            break;
+        }
+        next.iter_mut().for_each(|x| *x /= rest);
+        metric.iter_mut().for_each(|x| *x /= rest);
+        let y = next;
+        next = product(&y);
+        basis.push([y, metric]);
+    }
+    let mut all = Vec::new();
+    for (value, parts) in of_hessenberg(&columns, counts)? {
+        let mut y = vec![0.0; n];
+        for (part, [vector, _]) in parts.iter().zip(&basis) {
+            add_scaled(&mut y, *part, vector);
+        }
+        // A space of errors of products has eigenvalues, too.
+        let mut rest = product(&y);
+        add_scaled(&mut rest, -value, &y);
+        if dot(&rest, &weighted(&rest)).sqrt() <= CONVERGED * value.abs() {
+            all.push((value, y));
+        }
+    }
+    Some(all)
+}
+
+/// Real eigenvalues that count of the columns of a Hessenberg matrix, with unit eigenvectors.
+fn of_hessenberg(
+    columns: &[Vec<f64>],
+    counts: impl Fn(f64, f64) -> bool,
+) -> Option<Vec<(f64, Vec<f64>)>> {
+    let k = columns.len();
+    if k == 0 {
+        return Some(Vec::new());
+    }
+    let h = DMatrix::from_fn(k, k, |i, j| columns[j].get(i).copied().unwrap_or(0.0));
+    let schur = h.clone().try_schur(f64::EPSILON, SWEEPS)?;
+    let values = schur.complex_eigenvalues();
+    let largest = values.iter().fold(0.0_f64, |m, x| m.max(x.norm()));
+    let real = values.iter().filter(|x| x.im == 0.0).map(|x| x.re);
+    let vector = |value: f64| {
+        let shifted = &h - DMatrix::identity(k, k) * value;
+        let svd = shifted.try_svd(false, true, f64::EPSILON, SWEEPS)?;
+        let v = svd.v_t?;
+        Some((value, v.row(k - 1).iter().copied().collect()))
+    };
+    let counted = real.filter(|&value| counts(value, largest));
+    Some(counted.filter_map(vector).collect())
+}

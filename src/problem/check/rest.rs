@@ -1,0 +1,90 @@
+//! Machines at rest: what has no meaning without time.
+
+use super::Checker;
+use crate::finding::Finding;
+use crate::pointer::join;
+use crate::schema::Analysis;
+use crate::schema::flexible::Start;
+use crate::schema::functions::OfMotion;
+use crate::schema::windows::Over;
+
+impl Checker<'_> {
+    /// Checks that the analysis fits the scene.
+    pub(super) fn analysis(&mut self) {
+        let document = self.document;
+        if document.analysis == Some(Analysis::Motion) && !document.structures.is_empty() {
+            let found = "a motion of structures, which do not move";
+            let expected = "\"rest\", or \"bodies\" with \"elements\"";
+            self.fault(Finding::new("/analysis", found, expected));
+        }
+        if !document.is_rest() {
+            return;
+        }
+        let rest = "beside \"analysis\": \"rest\"";
+        let still = "none, as nothing moves";
+        let given = document.simulation.as_ref();
+        if given.is_some_and(|own| !own.is_of_rest()) && !self.damage.touches("simulation") {
+            let found = format!("\"simulation\" {rest}");
+            let hint =
+                "\"analysis\": \"motion\" simulates; leave \"simulation\" out to look at the rest";
+            let finding = Finding::new("/simulation", found, "one of them");
+            self.fault(finding.of_key().hint(Some(hint.to_owned())));
+        }
+        if document.start != Start::Given {
+            let found = format!("\"start\" {rest}");
+            self.fault(Finding::new("/start", found, "one of them").of_key());
+        }
+        if document.initial_velocity.is_some() {
+            let found = format!("\"initial_velocity\" {rest}");
+            self.fault(Finding::new("/initial_velocity", found, still).of_key());
+        }
+        let moving = document
+            .bodies
+            .iter()
+            .filter(|(_, body)| body.velocity.is_some());
+        for (name, _) in moving {
+            let pointer = join(&join("/bodies", name), "velocity");
+            let found = format!("a velocity {rest}");
+            self.fault(Finding::new(pointer, found, still).of_key());
+        }
+        for (name, joint) in &document.joints {
+            let rate = joint.start().is_some_and(|start| {
+                let turn = start.turn.as_ref().and_then(|turn| turn.rate());
+                let slide = start.slide.as_ref().and_then(|slide| slide.rate.clone());
+                turn.is_some() || slide.is_some()
+            });
+            if rate {
+                let pointer = join(&join(&join("/joints", name), joint.kind().name()), "start");
+                let found = format!("a rate {rest}");
+                self.fault(Finding::new(pointer, found, still).of_key());
+            }
+        }
+    }
+
+    /// Checks that a function needs no time.
+    pub(super) fn at_rest(&mut self, pointer: &str, function: &OfMotion) {
+        let windowed = |over: &Over| match over {
+            Over::Whole(_) => false,
+            Over::Within(own) => own.during.is_some(),
+        };
+        let of_time = match function {
+            OfMotion::Ks(own) => own.during.is_some(),
+            OfMotion::InducedExponential(own) => own.during.is_some(),
+            OfMotion::Final(over) => windowed(over),
+            OfMotion::Clearance(_) | OfMotion::Mass => false,
+            OfMotion::Integral(_)
+            | OfMotion::Mean(_)
+            | OfMotion::MeanSquare(_)
+            | OfMotion::MeanAbsolute(_)
+            | OfMotion::FatigueDamage(_)
+            | OfMotion::Value(_)
+            | OfMotion::Misfit(_)
+            | OfMotion::Duration => true,
+        };
+        if of_time {
+            let found = "a function of time, of a machine at rest";
+            let expected = "\"final\", the value at rest; \"ks\" over points; \"mass\"; or expressions of them";
+            self.fault(Finding::new(pointer, found, expected).of_key());
+        }
+    }
+}
