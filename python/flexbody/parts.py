@@ -77,6 +77,7 @@ __all__ = [
     "Turn",
     "InDegrees",
     "BodyVelocity",
+    "Analysis",
     "StartOfMotion",
     "Joint",
     "JointPlace",
@@ -665,6 +666,9 @@ Turns: TypeAlias = Union[Turn, Sequence[Turn]]
 
 InDegrees: TypeAlias = Union[Real, Vector]
 """One angle or three, in degrees."""
+
+Analysis: TypeAlias = Literal["motion", "rest"]
+"""What is computed of a machine."""
 
 StartOfMotion: TypeAlias = Literal["given", "equilibrium"]
 """Deformations of flexible bodies at the start."""
@@ -4385,6 +4389,7 @@ class MachineKeys(Document):
         "input_tolerance",
         "parameters",
         "bodies",
+        "analysis",
         "start",
         "initial_velocity",
         "joints",
@@ -4415,6 +4420,7 @@ class MachineKeys(Document):
         description: str | None = None,
         gravity: Vector | None = None,
         input_tolerance: Real | None = None,
+        analysis: Analysis | None = None,
         start: StartOfMotion | None = None,
     ) -> None:
         """A problem file with this name.
@@ -4433,6 +4439,11 @@ class MachineKeys(Document):
             How well rounded numbers fit: joints of loops may miss each other by this part of the size of their loop
             and by this angle [rad], and an inertia may miss that of a solid by this part. What is left out is said.
             Default 1e-5.
+        analysis : "motion" or "rest", optional
+            What is computed of a machine of bodies: its motion (default), or where it rests under gravity and loads.
+            Structures are always at rest.
+            "motion": Its motion over time.
+            "rest": Where it rests: without velocity and acceleration, drives and loads held as they are at t = 0.
         start : "given" or "equilibrium", optional
             Deformations of flexible bodies at the start, default "given".
             "given": Those that the bodies give, else none.

@@ -293,6 +293,17 @@ def test_rest_of_a_motion_is_its_equilibrium() -> None:
         problem.modes()
 
 
+def test_a_machine_rests() -> None:
+    problem = flexbody.Problem.from_file(PROBLEMS / "desk_lamp.json")
+    rest = problem.rest()
+    assert isinstance(rest, dict)
+    height, reach = problem.values(functions=["height", "reach"])
+    assert rest["lamp"].position[:2] == pytest.approx([reach, height], abs=1e-12)
+    assert rest["lamp"].velocity == pytest.approx([0, 0, 0], abs=0)
+    response = problem.simulate()
+    assert len(response.times) == 1 and response.histories["height"] == pytest.approx([height], abs=1e-12)
+
+
 def test_a_page_shows_the_motion(pendulum: flexbody.Problem, tmp_path: Path) -> None:
     page = pendulum.animate()
     page.save(tmp_path / "page.html")

@@ -21,6 +21,11 @@ pub(crate) fn measure(asked: &Measurement) -> Result<u8, Failure> {
     if problem.statics.is_some() {
         return super::statics::measure(job, &problem, asked.function.as_deref(), asked.runs);
     }
+    if problem.is_rest() {
+        let what =
+            "found a machine at rest, expected a motion: at rest there is no step to measure";
+        return Err(Failure::bad_input(what));
+    }
     let plan = plan(asked, &problem)?;
     let directory = match &job.output {
         Some(directory) => directory.clone(),

@@ -55,7 +55,10 @@ pub const VERSION: u64 = 1;
         "then" = {"required": ["materials"]},
         "else" = {
             "required": ["bodies"],
-            "if": {"properties": {"analysis": {"const": "rest"}}, "required": ["analysis"]},
+            "if": {
+                "properties": {"analysis": {"const": "rest", "description": "At rest nothing is simulated."}},
+                "required": ["analysis"]
+            },
             "else": {"required": ["simulation"]}
         }
     )

@@ -244,3 +244,32 @@ fn bad_input_is_refused_with_the_reason() {
     }
     assert!(!directory.path().join("results").exists());
 }
+
+/// The gradient of an expression is that of the functions that it names; a machine at rest has no steps.
+#[test]
+fn expressions_are_measured_and_machines_at_rest_refused() {
+    let directory = tempfile::tempdir().expect("a directory");
+    let with = |from: &str, to: &str| PENDULUM.replace(from, to);
+    let expression = with(
+        r#""height": {"#,
+        r#""sum": {"expression": "width + 2*height"}, "height": {"#,
+    );
+    let arguments = ["--function", "sum", "--halvings", "2", "--runs", "1"];
+    let out = measure(directory.path(), &expression, &arguments);
+    assert!(out.status.success(), "{}", text(&out.stderr));
+    let place = "results/work-precision/pendulum/work_precision.csv";
+    let table = Table::read(&directory.path().join(place));
+    let errors = table
+        .rows
+        .iter()
+        .map(|row| table.cell(row, "gradient_error"));
+    assert!(errors.clone().count() > 4 && errors.clone().any(|own| !own.is_empty()));
+    let rest = with(r#""simulation": {"duration": 2}"#, r#""analysis": "rest""#);
+    let out = measure(directory.path(), &rest, &[]);
+    assert_eq!(out.status.code(), Some(2));
+    assert!(
+        text(&out.stderr).contains("machine at rest"),
+        "{}",
+        text(&out.stderr)
+    );
+}

@@ -133,8 +133,9 @@ impl<'a> Bench<'a> {
                 }
                 false => history,
             };
+            let of_scene = self.problem.composition.of_scene(&[function]).into_owned();
             row.gradient_cpu_seconds = Some(fastest(runs, || {
-                adjoint::gradients(&self.scene, &run, &[function]).map(|found| {
+                adjoint::gradients(&self.scene, &run, &of_scene).map(|found| {
                     black_box(found);
                 })
             })?);

@@ -50,7 +50,7 @@ impl Checker<'_> {
         for (name, joint) in &document.joints {
             let rate = joint.start().is_some_and(|start| {
                 let turn = start.turn.as_ref().and_then(|turn| turn.rate());
-                let slide = start.slide.as_ref().and_then(|slide| slide.rate.clone());
+                let slide = start.slide.as_ref().and_then(|slide| slide.rate);
                 turn.is_some() || slide.is_some()
             });
             if rate {
