@@ -83,7 +83,8 @@ def test_names_complete() -> None:
 
 def build(document: dict[str, Any]) -> Machine:
     """The document by calls alone, kind by kind."""
-    top = {key: document[key] for key in ("description", "gravity", "input_tolerance", "start") if key in document}
+    keys = ("description", "gravity", "input_tolerance", "analysis", "start")
+    top = {key: document[key] for key in keys if key in document}
     machine = Machine(document["name"], **top)
     collections = {"joints": parts.joints, "loads": parts.loads}
     for key, value in document.items():
