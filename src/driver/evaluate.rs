@@ -403,8 +403,6 @@ fn parameter_derivatives(
         .map(|(j, &value)| Dual::new(value, if i == j { 1.0 } else { 0.0 }))
         .collect();
     let scene = problem.scene(&x);
-    if let Some(failure) = scene.unstarted {
-        return Err(IntegrationFailure::Assembly(failure));
-    }
+    scene.admit_start()?;
     Ok(scene.parameters().into_iter().map(|p| p.du).collect())
 }

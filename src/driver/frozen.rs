@@ -41,9 +41,7 @@ pub(super) fn complex_motion(
     x: &[Complex64],
 ) -> Result<(Scene<Complex64>, Trajectory<Complex64>), IntegrationFailure> {
     let scene = problem.scene(x);
-    if let Some(failure) = scene.unstarted {
-        return Err(IntegrationFailure::Assembly(failure));
-    }
+    scene.admit_start()?;
     let duration = event::complex_duration(&scene, settings, event)?;
     let run = simulate(&scene.model, duration, settings)?;
     Ok((scene, run))

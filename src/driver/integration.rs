@@ -285,9 +285,7 @@ impl Integration {
         &mut self,
         scene: &mut Scene<f64>,
     ) -> Result<(Trajectory<f64>, Option<Refresh>), IntegrationFailure> {
-        if let Some(failure) = &scene.unstarted {
-            return Err(IntegrationFailure::Assembly(failure.clone()));
-        }
+        scene.admit_start()?;
         memory::admit(&scene.model, &self.wanted())?;
         let settled = self.settled.take();
         let waited = scene.duration;

@@ -38,12 +38,7 @@ fn of_rest(problem: &Problem, x: &[f64]) -> Vec<String> {
     let Some(stability) = problem.stability_at_rest(x) else {
         return Vec::new();
     };
-    let unstable = stability.growth.map(|growth| {
-        format!(
-            "the rest is not stable: a disturbance grows by a factor of e in {:.1e} s",
-            1.0 / growth
-        )
-    });
+    let unstable = (stability.growth).map(|rate| format!("the rest is {}", not_stable(rate)));
     let free = (!stability.free.is_empty()).then(|| {
         let mut names = stability.free;
         let more = names.len().saturating_sub(MOST);
@@ -68,10 +63,15 @@ fn of_rest(problem: &Problem, x: &[f64]) -> Vec<String> {
 pub fn unstable(problem: &Problem, x: &[f64]) -> Option<String> {
     let growth = problem.growth_at_equilibrium(x)?;
     Some(format!(
-        "the start in equilibrium is not stable: a disturbance grows by a factor of e in {:.1e} s, unless rotation \
-         holds it",
-        1.0 / growth
+        "the start in equilibrium is {}, unless rotation holds it",
+        not_stable(growth)
     ))
+}
+
+/// That a disturbance grows with `rate` \[1/s\].
+fn not_stable(rate: f64) -> String {
+    let time = 1.0 / rate;
+    format!("not stable: a disturbance grows by a factor of e in {time:.1e} s")
 }
 
 /// Notes on a start without equilibrium; `when` says when bodies are deformed.

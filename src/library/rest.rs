@@ -125,9 +125,7 @@ pub fn start_states(
     }
     let scene = problem.unlowered_scene::<f64>(x);
     let assembly = |failure| AnalysisFailure::from(IntegrationFailure::Assembly(failure));
-    if let Some(failure) = scene.unstarted {
-        return Err(assembly(failure).into());
-    }
+    scene.admit_start().map_err(AnalysisFailure::from)?;
     let (model, numbering) = (&scene.model, Numbering::new(&scene.model));
     let start = consistent(model, &numbering).map_err(assembly)?;
     let mut motions = Vec::new();

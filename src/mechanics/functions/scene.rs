@@ -1,7 +1,7 @@
 //! A scene: all that a design determines.
 
 use super::{Function, Quantity, Reduction};
-use crate::integrate::Trajectory;
+use crate::integrate::{IntegrationFailure, Trajectory};
 use crate::math::{Complex64, Parameters, Scalar, parameters};
 use crate::model::Model;
 use crate::system::failure::AssemblyFailure;
@@ -81,6 +81,17 @@ impl TerminalEvent<f64> {
 parameters!(struct Scene { unstarted; model, duration, until, functions });
 
 impl<S: Scalar> Scene<S> {
+    /// Refuses a scene that cannot start.
+    ///
+    /// # Errors
+    /// Why it cannot.
+    pub fn admit_start(&self) -> Result<(), IntegrationFailure> {
+        match &self.unstarted {
+            Some(failure) => Err(IntegrationFailure::Assembly(failure.clone())),
+            None => Ok(()),
+        }
+    }
+
     /// Number of the event's quantity: one past the last function.
     pub fn event(&self) -> usize {
         self.functions.len()

@@ -71,9 +71,8 @@ struct Interface<S> {
 /// and its derivatives have the same bodies.
 const SAME: f64 = 1e-12;
 
-fn is_same<S: Scalar>(model: &Model<S>, [p, q]: [&Vec3<S>; 2]) -> bool {
-    let apart = (p - q).map(|x| x.re().abs()).max();
-    apart == 0.0 || apart <= SAME * length_scale(model)
+fn is_same<S: Scalar>(length: f64, [p, q]: [&Vec3<S>; 2]) -> bool {
+    (p - q).map(|x| x.re().abs()).max() <= SAME * length
 }
 
 /// Whether points that are the same differ in their infinitesimal parts by more than round-off: a variable moves them apart.
@@ -113,6 +112,8 @@ pub struct FlexibleBodies<S> {
     pub places: Vec<HeldPlace<S>>,
     /// A body on which a variable moves two places apart that are the same at this design.
     pub apart: Option<String>,
+    /// Length scale of the scene, if it has bodies with interfaces at any point \[m\].
+    length: f64,
 }
 
 /// The numbers of the flexible bodies of a document, each kind in the order of the bodies.
@@ -193,6 +194,10 @@ impl<S: Scalar> FlexibleBodies<S> {
             interfaces: Vec::new(),
             places: Vec::new(),
             apart: None,
+            length: match numbers.shapes.is_empty() {
+                true => 0.0,
+                false => length_scale(model),
+            },
         };
         let bodies = document.bodies.values().enumerate();
         let meshed = bodies.filter_map(|(frame, body)| Some((frame, body.elements.as_ref()?)));
@@ -283,11 +288,12 @@ impl<S: Scalar> FlexibleBodies<S> {
         }
         let elastic = self.bodies.iter().find(|elastic| elastic.frame == body)?;
         let flexible = elastic.flexible;
-        let known = (self.interfaces.iter())
-            .find(|known| known.flexible == flexible && is_same(model, [&known.point, &point]));
+        let known = (self.interfaces.iter()).find(|known| {
+            known.flexible == flexible && is_same(self.length, [&known.point, &point])
+        });
         if let Some(known) = known {
             let frame = &model.bodies[body];
-            if part_company(frame, length_scale(model), [&known.point, &point]) {
+            if part_company(frame, self.length, [&known.point, &point]) {
                 self.apart = Some(frame.name.clone());
             }
             return Some(known.body);

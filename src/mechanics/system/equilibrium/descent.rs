@@ -37,10 +37,10 @@ const LEAST_GAIN: f64 = 0.05;
 const GOOD_GAIN: f64 = 0.5;
 /// A shorter step says nothing of the energy.
 const SHORT: f64 = 1e-7;
-/// Accelerations below this, relative to those of the placement, are round-off, and so many slow steps the end.
-const BALANCED: f64 = 1e-11;
 /// Motions with less than so many times the stiffness σ converge slowly by it.
 const FLOORED: f64 = 100.0;
+/// Accelerations below this, relative to those of the placement, are round-off, and so many slow steps the end.
+const BALANCED: f64 = 1e-11;
 const SLOW_STEPS: usize = 3;
 /// σ at which steps go along the forces, relative to the rate without joints; and the least rate relative to it.
 const ALONG_FORCES: f64 = 1e6;
@@ -67,10 +67,11 @@ impl Solver<'_> {
         let layout = self.layout;
         let none = |iterations| AssemblyFailure::NoRest { iterations };
         let mut factors = Factors::plan(layout, self.model, &layout.start(self.given));
-        let (mut x, mut shift) = self.released(&mut factors)?;
+        let mut x = self.released(&mut factors)?;
         let rate = x.rate;
         let mut residual = layout.residual(self.model, self.given, &x);
-        let (mut floor, mut before, mut away, mut leaves) = (FLOOR * rate, f64::INFINITY, 0.0, 0);
+        let (mut shift, mut floor) = (rate, FLOOR * rate);
+        let (mut before, mut away, mut leaves) = (f64::INFINITY, 0.0, 0);
         let mut slow: Vec<State<f64>> = Vec::new();
         for iteration in 1..=ITERATIONS {
             if shift > LARGEST_SHIFT * rate {
@@ -139,17 +140,13 @@ impl Solver<'_> {
             }
             before = step.size;
         }
-        let free = self.stability(&mut factors, &x)?.free;
-        match free.is_empty() {
-            true => Err(none(ITERATIONS)),
-            false => Err(AssemblyFailure::NotHeld {
-                bodies: free.join(", "),
-            }),
-        }
+        self.factorise_at(&mut factors, &x)?;
+        self.not_held(&mut factors, &x)?;
+        Err(none(ITERATIONS))
     }
 
-    /// The placement with reactions and its rate, and the first σ: the largest acceleration by length of the scene.
-    fn released(&self, factors: &mut Factors) -> Result<(State<f64>, f64), AssemblyFailure> {
+    /// The placement with reactions and its rate, the first σ: the largest acceleration by length of the scene.
+    fn released(&self, factors: &mut Factors) -> Result<State<f64>, AssemblyFailure> {
         let layout = self.layout;
         let mut x = layout.start(self.given);
         let residual = layout.residual(self.model, self.given, &x);
@@ -165,8 +162,7 @@ impl Solver<'_> {
         layout.advance(&mut x, &change);
         let with_joints = self.rate(&layout.residual(self.model, self.given, &x));
         x.rate = with_joints.max(LEAST_RATE * without_joints);
-        let first = x.rate;
-        Ok((x, first))
+        Ok(x)
     }
 
     /// The largest acceleration of a body that the balance in `residual` leaves, per length of the scene \[1/s²\].

@@ -182,6 +182,20 @@ fn without_spin<S: Scalar>(model: &Model<S>) -> Model<S> {
     own
 }
 
+/// What `of` makes of the real solution of `model` and its factors. The bodies of `model` are placed and undeformed.
+fn at_solution<T>(
+    model: &Model<f64>,
+    known: &KnownStarts,
+    sought: Sought,
+    of: impl FnOnce(&Solver, &mut Factors, &State<f64>) -> Result<T, AssemblyFailure>,
+) -> Result<T, AssemblyFailure> {
+    let own = without_spin(model);
+    let numbering = Numbering::new(&own);
+    with_solution((&own, &numbering, sought), known, |_, solver, found| {
+        solver.with_factors(found, |factors| of(solver, factors, found))?
+    })
+}
+
 /// What `of` makes of the real solution for a model [`without_spin`], whose bodies are placed and undeformed.
 fn with_solution<S: Scalar, T>(
     (own, numbering, sought): (&Model<S>, &Numbering, Sought),
@@ -277,9 +291,7 @@ impl Solver<'_> {
             Some(factors) => factors,
             None => {
                 let mut factors = Factors::plan(self.layout, self.model, found);
-                let shift = self.least_shift(found);
-                let made = factors.make(self.layout, self.model, (found, shift));
-                made.map_err(|_| AssemblyFailure::Singular)?;
+                self.factorise_at(&mut factors, found)?;
                 factors
             }
         };

@@ -9,12 +9,11 @@
 use super::equations::State;
 use super::matrix::{Factors, RigidMetric};
 use super::ritz::ritz_vectors;
-use super::{KnownStarts, Solver, Sought, with_solution, without_spin};
+use super::{KnownStarts, Solver, Sought, at_solution};
 use crate::math::slices::{add_scaled, dot};
 use crate::model::Model;
 use crate::system::bodies::BodyMotion;
 use crate::system::failure::AssemblyFailure;
-use crate::system::numbering::Numbering;
 
 /// The smallest σ of factors, relative to the rate of the placement.
 pub(super) const FLOOR: f64 = 1e-6;
@@ -41,26 +40,35 @@ pub struct Stability {
 /// # Errors
 /// If there is no rest.
 pub fn stability(model: &Model<f64>, known: &KnownStarts) -> Result<Stability, AssemblyFailure> {
-    let own = without_spin(model);
-    let numbering = Numbering::new(&own);
-    let of = |_: &_, solver: &Solver, found: &_| {
-        solver.with_factors(found, |factors| solver.stability(factors, found))?
-    };
-    with_solution((&own, &numbering, Sought::Rest), known, of)
+    at_solution(model, known, Sought::Rest, |solver, factors, found| {
+        solver.stability(factors, found)
+    })
 }
 
 impl Solver<'_> {
-    /// The smallest σ \[1/s²\] of factors at a solution.
-    pub(super) fn least_shift(&self, found: &State<f64>) -> f64 {
+    /// The smallest σ \[1/s²\] of factors at a solution; zero of a start.
+    fn least_shift(&self, found: &State<f64>) -> f64 {
         FLOOR * found.rate
     }
 
-    /// The unknowns of the motion that grows fastest from an equilibrium; `None` if it is stable.
+    /// Makes the factors at a solution, with the smallest σ.
+    pub(super) fn factorise_at(
+        &self,
+        factors: &mut Factors,
+        found: &State<f64>,
+    ) -> Result<(), AssemblyFailure> {
+        let at = (found, self.least_shift(found));
+        let made = factors.make(self.layout, self.model, at);
+        made.map_err(|_| AssemblyFailure::Singular)
+    }
+
+    /// The unknowns of the motion that grows fastest from an equilibrium; `None` if it is stable. Makes the factors there.
     pub(super) fn growing(
         &self,
         factors: &mut Factors,
         found: &State<f64>,
     ) -> Result<Option<Vec<f64>>, AssemblyFailure> {
+        self.factorise_at(factors, found)?;
         let soft = self.soft_motions(factors, found)?;
         let least = soft.into_iter().min_by(|a, b| a.0.total_cmp(&b.0));
         let growing = least.filter(|(stiffness, _)| *stiffness < -FREE * found.rate);
@@ -98,16 +106,27 @@ impl Solver<'_> {
         if sizes[0] <= UNSOLVED * sizes[1] {
             return Ok(change);
         }
-        match self.stability(factors, found)?.free {
-            free if free.is_empty() => Err(AssemblyFailure::Singular),
-            free => Err(AssemblyFailure::NotHeld {
+        self.not_held(factors, found)?;
+        Err(AssemblyFailure::Singular)
+    }
+
+    /// Fails by the names of bodies that can move without stiffness, if there are some, with factors there.
+    pub(super) fn not_held(
+        &self,
+        factors: &mut Factors,
+        at: &State<f64>,
+    ) -> Result<(), AssemblyFailure> {
+        let free = self.stability(factors, at)?.free;
+        match free.is_empty() {
+            true => Ok(()),
+            false => Err(AssemblyFailure::NotHeld {
                 bodies: free.join(", "),
             }),
         }
     }
 
-    /// The stability of a solution.
-    pub(super) fn stability(
+    /// The stability of a solution, with its factors.
+    fn stability(
         &self,
         factors: &mut Factors,
         found: &State<f64>,
@@ -127,7 +146,7 @@ impl Solver<'_> {
         Ok(out)
     }
 
-    /// Motions y with K y = λ M̃ y on G y = 0 and their λ, those with λ below the least σ.
+    /// Motions y with K y = λ M̃ y on G y = 0 and their λ, those with λ below the least σ, with the factors of a solution.
     fn soft_motions(
         &self,
         factors: &mut Factors,
@@ -138,9 +157,6 @@ impl Solver<'_> {
         let motions = layout.at_rest(&found.q);
         let weighted = |y: &[f64]| self.metric_product(&motions, y);
         let shift = self.least_shift(found);
-        factors
-            .make(layout, self.model, (found, shift))
-            .map_err(|_| AssemblyFailure::Singular)?;
         let softened = |y: &[f64]| {
             let mut right = weighted(y);
             right.resize(layout.order(), 0.0);

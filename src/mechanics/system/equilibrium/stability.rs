@@ -13,10 +13,9 @@
 
 use super::matrix::Factors;
 use super::ritz::ritz_vectors;
-use super::{FINE, KnownStarts, Solver, Sought, State, with_solution, without_spin};
+use super::{FINE, KnownStarts, Solver, Sought, State, at_solution};
 use crate::model::Model;
 use crate::system::failure::AssemblyFailure;
-use crate::system::numbering::Numbering;
 
 /// A negative eigenvalue counts if it is larger than this, relative to the largest one.
 const COUNTS: f64 = 1e-7;
@@ -27,12 +26,9 @@ const COUNTS: f64 = 1e-7;
 /// # Errors
 /// If there is no such start.
 pub fn growth(model: &Model<f64>, known: &KnownStarts) -> Result<Option<f64>, AssemblyFailure> {
-    let own = without_spin(model);
-    let numbering = Numbering::new(&own);
-    let growth = |_: &_, solver: &Solver, found: &_| {
-        solver.with_factors(found, |factors| solver.growth(factors, found))?
-    };
-    with_solution((&own, &numbering, Sought::Start), known, growth)
+    at_solution(model, known, Sought::Start, |solver, factors, found| {
+        solver.growth(factors, found)
+    })
 }
 
 impl Solver<'_> {

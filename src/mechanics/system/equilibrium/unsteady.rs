@@ -10,14 +10,13 @@
 
 use super::equations::State;
 use super::matrix::Factors;
-use super::{FINE, Given, KnownStarts, Solver, Sought, with_solution, without_spin};
+use super::{FINE, Given, KnownStarts, Solver, Sought, at_solution};
 use crate::math::slices::dot;
 use crate::math::{Dual, Parameters};
 use crate::model::{FlexibleBody, Model};
 use crate::system::bodies;
 use crate::system::failure::AssemblyFailure;
 use crate::system::flexible::strain_energy;
-use crate::system::numbering::Numbering;
 
 /// By flexible body: √(T / U), with T the kinetic energy of the rates that the start of `model` leaves out and U its strain
 /// energy. This is the amplitude of the vibration that follows, as a part of the deformation. The bodies of `model` are
@@ -26,13 +25,9 @@ use crate::system::numbering::Numbering;
 /// # Errors
 /// If there is no such start.
 pub fn left_out(model: &Model<f64>, known: &KnownStarts) -> Result<Vec<f64>, AssemblyFailure> {
-    let own = without_spin(model);
-    let numbering = Numbering::new(&own);
-    with_solution(
-        (&own, &numbering, Sought::Start),
-        known,
-        |_, solver, found| solver.with_factors(found, |factors| solver.left_out(factors, found)),
-    )
+    at_solution(model, known, Sought::Start, |solver, factors, found| {
+        Ok(solver.left_out(factors, found))
+    })
 }
 
 impl Solver<'_> {
