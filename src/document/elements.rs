@@ -173,11 +173,11 @@ pub struct ReducedKeys {
 pub enum Held {
     /// A set of one node.
     Node(String),
-    /// A straight edge, as `rigid` if a weld holds it, else as `mean`.
+    /// An edge, as `rigid` if a weld holds it, else as `mean`.
     Edge(String),
-    /// A straight edge all of whose nodes follow: it moves as a rigid body.
+    /// An edge all of whose nodes follow: it moves as a rigid body.
     Rigid(String),
-    /// A straight edge whose average follows: its mean place, and the rotation of its line.
+    /// An edge whose average follows: its mean place, and the rotation that fits its displacements best.
     Mean(String),
 }
 

@@ -7,6 +7,7 @@ pub mod flexible;
 pub mod functions;
 pub mod instants;
 pub mod joints;
+pub mod length_unit;
 pub mod loads;
 pub mod measured;
 pub mod mechanics;

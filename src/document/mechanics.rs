@@ -3,6 +3,7 @@
 use super::elements::Elements;
 use super::flexible::Beam;
 use super::modal::Modal;
+use crate::length_unit::LengthUnit;
 use crate::quantity::{Degrees, Quantity, Vector};
 use flexbody_mathematics::math::{Mat3, Vec3};
 use indexmap::IndexMap;
@@ -87,33 +88,6 @@ pub struct Solid {
     pub outermost: Vec<Vec3<f64>>,
     /// Whether the file orders the vertices of its triangles as seen from inside.
     pub inwards: bool,
-}
-
-/// A unit of length.
-#[derive(Clone, Copy, Debug, Default, Deserialize, JsonSchema)]
-#[serde(rename_all = "snake_case")]
-pub enum LengthUnit {
-    /// Metres.
-    #[default]
-    M,
-    /// Centimetres.
-    Cm,
-    /// Millimetres.
-    Mm,
-    /// Inches.
-    Inch,
-}
-
-impl LengthUnit {
-    /// Its length \[m\].
-    pub fn metres(self) -> f64 {
-        match self {
-            Self::M => 1.0,
-            Self::Cm => 0.01,
-            Self::Mm => 0.001,
-            Self::Inch => 0.0254,
-        }
-    }
 }
 
 /// A named point of a body.

@@ -1,11 +1,14 @@
 //! Structures of shells and beams as they are written in a file.
 
 use super::flexible::Damping;
+use crate::length_unit::LengthUnit;
 use crate::names::Names;
 use crate::quantity::{Quantity, Vector};
+use flexbody_mathematics::math::Vec3;
 use indexmap::IndexMap;
 use schemars::JsonSchema;
 use serde::Deserialize;
+use std::sync::Arc;
 
 /// A structure: a mesh, of what it is made, and how it is supported.
 #[derive(Clone, Debug, Deserialize, JsonSchema)]
@@ -160,6 +163,37 @@ pub enum Mesh {
         /// The members by name.
         members: IndexMap<String, Member>,
     },
+    /// A mesh from a file of Gmsh.
+    Gmsh(GmshMesh),
+}
+
+/// A mesh from a file of Gmsh, MSH 2.2 or 4.1 in ASCII: shells of its quadrangles or, if it has none, beams of its
+/// lines. Physical groups are sets of their names: of points sets of nodes, of lines sets of nodes and of edges (or
+/// beams), of surfaces sets of nodes and of faces; a group without a name is point1, line1, surface1 with its number.
+#[derive(Clone, Debug, Deserialize, JsonSchema)]
+#[serde(deny_unknown_fields)]
+pub struct GmshMesh {
+    /// The file; its path is relative to the problem file.
+    pub file: String,
+    /// Unit of its coordinates, default m.
+    #[serde(default)]
+    pub unit: LengthUnit,
+    /// Of beams: a vector in the plane of each and axis 2 of its section.
+    #[schemars(extend("unit" = "1"))]
+    pub orientation: Option<Vector>,
+    /// The mesh, once read.
+    #[serde(skip)]
+    #[schemars(skip)]
+    pub read: Option<Arc<ReadMesh>>,
+}
+
+/// A mesh that was read, with the places of its nodes \[m\].
+#[derive(Clone, Debug, Default, PartialEq)]
+pub struct ReadMesh {
+    /// The mesh with its sets.
+    pub mesh: flexbody_mechanics::structures::mesh::Mesh,
+    /// Places of the nodes \[m\].
+    pub nodes: Vec<Vec3<f64>>,
 }
 
 impl Mesh {
@@ -171,12 +205,24 @@ impl Mesh {
             | Self::CurvedPanel { elements, .. }
             | Self::Cylinder { elements, .. } => Some(*elements),
             Self::StraightBeam { .. } | Self::CurvedBeam { .. } | Self::Frame { .. } => None,
+            Self::Gmsh(_) => None,
         }
     }
 
     /// Whether it has beams, and not shells.
     pub fn is_of_beams(&self) -> bool {
-        self.panel_elements().is_none()
+        match self {
+            Self::Gmsh(gmsh) => {
+                let read = gmsh.read.as_ref();
+                read.is_some_and(|own| own.mesh.shells.is_empty())
+            }
+            other => other.panel_elements().is_none(),
+        }
+    }
+
+    /// Whether its file is still to be read.
+    pub fn is_unread(&self) -> bool {
+        matches!(self, Self::Gmsh(gmsh) if gmsh.read.is_none())
     }
 }
 

@@ -88,6 +88,17 @@ impl<'a> DataFiles<'a> {
         parse: impl FnOnce(&str) -> Result<T, TextFault>,
     ) -> Result<T, Box<DataFault>> {
         let bytes = self.bytes(pointer, file)?;
+        self.text(pointer, file, bytes, parse)
+    }
+
+    /// Parses the bytes of a text that the entry at `pointer` names.
+    pub(super) fn text<T>(
+        &self,
+        pointer: &str,
+        file: &str,
+        bytes: Vec<u8>,
+        parse: impl FnOnce(&str) -> Result<T, TextFault>,
+    ) -> Result<T, Box<DataFault>> {
         let path = self.directory.join(file);
         let data = |text: String, fault: TextFault| {
             Box::new(DataFault::Data {

@@ -68,6 +68,7 @@ pub fn mesh_quantities(mesh: &WrittenMesh) -> Vec<Quantity> {
                 .flatten()
                 .collect()
         }
+        WrittenMesh::Gmsh(gmsh) => gmsh.orientation.iter().flatten().copied().collect(),
     }
 }
 

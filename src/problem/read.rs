@@ -12,6 +12,7 @@ use super::finding::Finding;
 use super::first_scene::{
     collapsed, driven_twice, oblique, too_many, unassembled, unstarted, without_inertia,
 };
+use super::gmsh;
 use super::holds;
 use super::measurements;
 use super::modal;
@@ -127,6 +128,7 @@ pub(super) fn parse(written: &str, file: &str, overrides: &[Override]) -> Result
             content
                 + &surfaces::load(&mut written, (file, &source))?
                 + &measurements::load(&mut written, (file, &source))?
+                + &gmsh::load(&mut written, (file, &source))?
         }
         false => String::new(),
     };
@@ -169,6 +171,7 @@ pub(super) fn parse(written: &str, file: &str, overrides: &[Override]) -> Result
             modal::share(&written, &mut bound);
             surfaces::share(&written, &mut bound);
             measurements::share(&written, &mut bound);
+            gmsh::share(&written, &mut bound);
             elements::share(&written, &mut bound);
             let document = original.unwrap_or(document);
             let mut problem = problem(document, (bound, &content), order, variables, &composing);

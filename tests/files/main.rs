@@ -30,6 +30,7 @@ mod fixed_steps;
 mod flexible_families;
 mod flexible_scenes;
 mod function_expressions;
+mod gmsh;
 mod held_edges;
 mod last_modes;
 mod lateral;

@@ -355,8 +355,9 @@ impl Surface {
         sum.finish(self.nodes[node])
     }
 
-    /// The motion of a straight edge as a whole: the mean displacement by Simpson's weights, the turn of its
-    /// line, and about its line the mean of the rotations.
+    /// The motion of an edge as a whole: the mean displacement by Simpson's weights, and the rotation
+    /// J⁻¹ Σ w r × u that fits the displacements u best, r from the middle, J = Σ w (r·r I − r rᵀ). A straight edge
+    /// has no such rotation about its line: there it is the mean of the rotations.
     pub fn edge(&self, edges: &[[usize; 3]]) -> PointMotion {
         let mut weights: BTreeMap<usize, f64> = BTreeMap::new();
         for edge in edges {
@@ -371,21 +372,34 @@ impl Surface {
         let place = (all.iter()).fold(Vec3::zeros(), |sum: Vec3<f64>, &(node, w)| {
             sum + self.nodes[node] * w
         });
-        let nodes: Vec<Vec3<f64>> = all.iter().map(|&(node, _)| self.nodes[node]).collect();
-        let [start, end] = ends(&nodes, place);
-        let along = (end - start).normalize();
-        let arm = |node: usize| (self.nodes[node] - place).dot(&along);
-        let square: f64 = all.iter().map(|&(node, w)| w * arm(node).powi(2)).sum();
+        let arm = |node: usize| self.nodes[node] - place;
+        let second = all
+            .iter()
+            .fold(Mat3::zeros(), |sum: Mat3<f64>, &(node, w)| {
+                let r = arm(node);
+                sum + (Mat3::identity() * r.norm_squared() - r * r.transpose()) * w
+            });
+        // Of a straight edge: its line, and the inverse of J across it.
+        let (along, inverse) = match is_straight(&self.nodes, edges) {
+            true => {
+                let nodes: Vec<Vec3<f64>> = all.iter().map(|&(node, _)| self.nodes[node]).collect();
+                let [start, end] = ends(&nodes, place);
+                let along = (end - start).normalize();
+                let across = Mat3::identity() - along * along.transpose();
+                (Some(along), across * (2.0 / second.trace()))
+            }
+            false => (None, second.try_inverse().unwrap_or_else(Mat3::zeros)),
+        };
         let mut sum = Sum::default();
         for &(node, w) in &all {
             sum.displace(&self.displacements[node], w);
-            let lever = w * arm(node) / square;
             for (k, coordinate) in self.displacements[node].iter().enumerate() {
                 if let Some(coordinate) = coordinate {
-                    let unit = Vec3::ith(k, 1.0);
-                    sum.at(*coordinate).1 += along.cross(&unit) * lever;
+                    let moment = arm(node).cross(&Vec3::ith(k, 1.0)) * w;
+                    sum.at(*coordinate).1 += inverse * moment;
                 }
             }
+            let Some(along) = along else { continue };
             for (coordinate, rotation) in &self.rotations[node] {
                 sum.at(*coordinate).1 += along * (w * rotation.dot(&along));
             }

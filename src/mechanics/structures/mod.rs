@@ -24,6 +24,7 @@ pub mod parts;
 pub mod properties;
 pub mod quality;
 mod reactions;
+pub mod refined;
 pub mod resultants;
 mod sheets;
 pub mod shell;

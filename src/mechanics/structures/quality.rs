@@ -110,6 +110,23 @@ pub enum MeshFault {
     },
 }
 
+impl MeshFault {
+    /// The shell or beam at fault, if it is one.
+    pub fn element(&self) -> Option<usize> {
+        match *self {
+            Self::UnknownNode { shell, .. }
+            | Self::RepeatedNode { shell, .. }
+            | Self::Inverted { shell, .. }
+            | Self::MiddleNode { shell, .. } => Some(shell),
+            Self::BeamNode { beam, .. }
+            | Self::BeamShape { beam, .. }
+            | Self::Orientation { beam, .. } => Some(beam),
+            Self::OppositeNormals { second, .. } => Some(second),
+            Self::LooseNode { .. } | Self::NoPlace { .. } | Self::Orientations { .. } => None,
+        }
+    }
+}
+
 /// All faults of a mesh with nodes at these places \[m\].
 pub fn faults(mesh: &Mesh, nodes: &[Vec3<f64>]) -> Vec<MeshFault> {
     let mut all = connectivity(mesh);

@@ -13,7 +13,7 @@ use crate::schema::functions::ShellStress;
 use crate::schema::mechanics::Body;
 use crate::schema::structures::Structure;
 use crate::statics::mesh::part;
-use crate::structures::floating::{FrameNodes, is_straight, spans};
+use crate::structures::floating::{FrameNodes, spans};
 use crate::structures::mesh::Mesh;
 use crate::structures::quality::{faults, orientation_faults};
 use std::collections::{BTreeMap, BTreeSet};
@@ -52,7 +52,7 @@ impl Checker<'_> {
         }
         self.element_damping(&join(&own, "damping"), structure);
         self.stiffeners(&join(&pointer, "stiffeners"), elements);
-        if self.findings.len() > before {
+        if self.findings.len() > before || structure.mesh.is_unread() {
             return;
         }
         // A faulty material has been told.
@@ -136,10 +136,6 @@ impl Checker<'_> {
                     let found = format!("\"{set}\"");
                     self.fault(Finding::new(place, found, "the name of an edge").hint(hint));
                 }
-                Some(edges) if !is_straight(&part.nodes, edges) => {
-                    let found = format!("\"{set}\", which is curved");
-                    self.fault(Finding::new(place, found, "a straight edge, or a node"));
-                }
                 Some(_) => {}
             }
         }
@@ -192,6 +188,10 @@ impl Checker<'_> {
             if elements.structure.mesh.is_of_beams() {
                 let found = "a stiffener of a mesh of beams";
                 self.fault(Finding::new(&place, found, "a mesh of shells").of_key());
+            } else if elements.structure.mesh.panel_elements().is_none() {
+                let found = "a stiffener of a mesh without directions x and y";
+                let expected = "a mesh of a generator, which has lines of nodes along them";
+                self.fault(Finding::new(&place, found, expected).of_key());
             }
             self.sizes(&join(&place, "section"), &stiffener.section);
         }

@@ -99,10 +99,22 @@ impl Checker<'_> {
             let finding = Finding::new(join(&pointer, "material"), found, "the name of a material");
             self.fault(finding.hint(hint));
         }
+        if structure.mesh.is_unread() {
+            self.sets.unknown = true;
+            return;
+        }
         self.mesh(&join(&pointer, "mesh"), &structure.mesh);
         self.properties(&pointer, structure);
         for (set, written) in &structure.sets {
-            self.written_set(&join(&join(&pointer, "sets"), set), written);
+            let place = join(&join(&pointer, "sets"), set);
+            if matches!(structure.mesh, Mesh::Gmsh(_)) {
+                let found = "a set by its place in a mesh without directions x and y";
+                let hint = Some("a physical group of the file of the mesh is a set".to_owned());
+                let finding = Finding::new(place, found, "no such set").hint(hint);
+                self.fault(finding.of_key());
+                continue;
+            }
+            self.written_set(&place, written);
         }
         if self.findings.len() > before {
             self.sets.unknown = true;
@@ -219,6 +231,19 @@ impl Checker<'_> {
                     }
                 }
             }
+            Mesh::Gmsh(gmsh) => {
+                let beams = mesh.is_of_beams();
+                let found = match gmsh.orientation {
+                    None if beams => "no \"orientation\" of beams",
+                    Some(_) if !beams => "\"orientation\" of a mesh of shells",
+                    _ => return,
+                };
+                let expected = match beams {
+                    true => "a vector in the plane of each beam and axis 2 of its section",
+                    false => "no such key, as only beams have one",
+                };
+                self.fault(Finding::new(format!("{pointer}/gmsh"), found, expected).of_key());
+            }
             Mesh::Plate { .. }
             | Mesh::Panel { .. }
             | Mesh::Cylinder { .. }
@@ -304,6 +329,12 @@ impl Checker<'_> {
                 let expected = format!("\"{key}\", as \"per\" asks for them");
                 self.fault(Finding::new(pointer, found, expected).of_key());
             }
+        }
+        if let (Mesh::Gmsh(_), Per::Band | Per::Patch) = (&structure.mesh, of.per) {
+            let found = "bands or patches of a mesh without directions x and y";
+            let place = join(pointer, "per");
+            self.fault(Finding::new(place, found, "\"element\" or \"group\""));
+            return;
         }
         if let Some([nx, ny]) = structure.mesh.panel_elements() {
             let [px, py] = of.patches.unwrap_or([1, 1]);

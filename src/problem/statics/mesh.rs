@@ -1,10 +1,12 @@
 //! The mesh of one structure of a file, and the sets that it names.
 
+use crate::math::scalar::lift3;
 use crate::math::{Scalar, Vec3};
 use crate::quantity::{Quantity, vector};
-use crate::schema::structures::{Mesh as Written, Set, Structure};
+use crate::schema::structures::{GmshMesh, Mesh as Written, Set, Structure};
 use crate::structures::generate::{self, Generated, GeneratedBeams};
 use crate::structures::mesh::Mesh;
+use crate::structures::refined::{Refined, refined};
 use indexmap::IndexMap;
 
 /// A mesh with its nodes \[m\]. Every element of the file may be cut into `cuts` along each direction.
@@ -24,6 +26,7 @@ pub fn element_count(mesh: &Written) -> usize {
     match mesh {
         Written::StraightBeam { elements, .. } | Written::CurvedBeam { elements, .. } => *elements,
         Written::Frame { members, .. } => members.values().map(|member| member.elements).sum(),
+        Written::Gmsh(gmsh) => (gmsh.read.as_ref()).map_or(0, |own| own.mesh.elements().count()),
         panel => panel.panel_elements().map_or(0, |[nx, ny]| nx * ny),
     }
 }
@@ -101,6 +104,36 @@ pub fn generated<S: Scalar>(mesh: &Written, x: &[S], cuts: usize) -> Part<S> {
             of_line(line, cuts)
         }
         Written::Frame { points, members } => frame(points, members, x, cuts),
+        Written::Gmsh(gmsh) => of_gmsh(gmsh, x, cuts),
+    }
+}
+
+/// The mesh that was read; one without nodes if its file is still to be read.
+fn of_gmsh<S: Scalar>(gmsh: &GmshMesh, x: &[S], cuts: usize) -> Part<S> {
+    let (mesh, nodes) = match &gmsh.read {
+        Some(read) => (read.mesh.clone(), read.nodes.clone()),
+        None => Default::default(),
+    };
+    let own = mesh.nodes;
+    let Refined {
+        mesh,
+        nodes,
+        parents,
+    } = match cuts {
+        1 => Refined {
+            parents: (0..mesh.elements().count()).collect(),
+            mesh,
+            nodes,
+        },
+        _ => refined(&mesh, &nodes, cuts),
+    };
+    let orientation = gmsh.orientation.as_ref().map(|own| vector(own, x));
+    Part {
+        of_file: (0..nodes.len()).map(|node| node < own).collect(),
+        orientations: vec![orientation.unwrap_or_else(Vec3::zeros); mesh.beams.len()],
+        nodes: nodes.iter().map(lift3).collect(),
+        parent: parents,
+        mesh,
     }
 }
 

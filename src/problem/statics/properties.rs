@@ -8,33 +8,36 @@ use crate::structures::beam::{Section, SectionValues};
 
 /// Which value of its structure each element has.
 pub fn slots(structure: &written::Structure, part: &Part<f64>) -> Vec<usize> {
-    let panel = structure.mesh.panel_elements();
-    let of_groups = |groups: &[String], e: usize| {
-        let sets = match panel {
-            Some(_) => &part.mesh.face_sets,
-            None => &part.mesh.beam_sets,
-        };
-        let has = |name: &String| sets.get(name).is_some_and(|set| set.contains(&e));
-        groups.iter().position(has).unwrap_or(0)
+    let beams = structure.mesh.is_of_beams();
+    let [nx, ny] = (structure.mesh.panel_elements()).unwrap_or([part.parent.len(), 1]);
+    let (per, groups) = match (&structure.thickness, &structure.sections) {
+        (_, Some(varied)) if beams => (varied.per, &varied.groups),
+        (Some(written::Thickness::Varied(varied)), _) if !beams => (varied.per, &varied.groups),
+        _ => return vec![0; part.parent.len()],
     };
+    let mut of_groups = vec![0; part.parent.len()];
+    let sets = match beams {
+        true => &part.mesh.beam_sets,
+        false => &part.mesh.face_sets,
+    };
+    // The first group that has an element gives its value.
+    for (k, name) in groups.as_deref().unwrap_or(&[]).iter().enumerate().rev() {
+        for &e in sets.get(name).into_iter().flatten() {
+            of_groups[e] = k;
+        }
+    }
     let one = |e: usize| -> usize {
         let p = part.parent[e];
-        let Some([nx, ny]) = panel else {
-            return match &structure.sections {
-                None => 0,
-                Some(varied) => match varied.per {
-                    Per::Group => of_groups(varied.groups.as_deref().unwrap_or(&[]), e),
-                    Per::Element | Per::Band | Per::Patch => p,
-                },
+        let Some(written::Thickness::Varied(varied)) = &structure.thickness else {
+            return match per {
+                Per::Group => of_groups[e],
+                Per::Element | Per::Band | Per::Patch => p,
             };
         };
-        let Some(written::Thickness::Varied(varied)) = &structure.thickness else {
-            return 0;
-        };
         let (i, j) = (p % nx, p / nx);
-        match varied.per {
+        match per {
             Per::Element => p,
-            Per::Group => of_groups(varied.groups.as_deref().unwrap_or(&[]), e),
+            Per::Group => of_groups[e],
             Per::Band => match varied.along.unwrap_or(written::Direction::Y) {
                 written::Direction::X => i * varied.bands.unwrap_or(nx) / nx,
                 written::Direction::Y => j * varied.bands.unwrap_or(ny) / ny,

@@ -35,7 +35,8 @@ pub struct Basis {
 }
 
 impl Basis {
-    fn at(r: f64, s: f64) -> Self {
+    /// At (r, s).
+    pub fn at(r: f64, s: f64) -> Self {
         let (lr, ls) = (quadratic(r), quadratic(s));
         let (dr, ds) = (quadratic_slope(r), quadratic_slope(s));
         let product = |f: [f64; 3], g: [f64; 3]| std::array::from_fn(|k| f[k % 3] * g[k / 3]);
