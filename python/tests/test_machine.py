@@ -41,6 +41,7 @@ from flexbody.parts import (
     turning,
     varying_forces,
 )
+from scenes import PROBLEMS
 
 DATA = Path(__file__).parent / "data"
 
@@ -211,6 +212,33 @@ def test_structures(optimize: str, tmp_path: Path) -> None:
     machine.to_file(tmp_path / "cantilever.json")
     run = subprocess.run([optimize, "simulate", tmp_path / "cantilever.json"], capture_output=True, encoding="utf-8")
     assert run.returncode == 0, run.stderr
+
+
+def test_a_mesh_of_gmsh() -> None:
+    """Files are relative to the directory of the problem."""
+    machine = Machine("bracket")
+    steel = machine.add_material("steel", young=2.1e11, poisson=0.3, density=7800)
+    machine.add_structure(
+        "bracket", mesh=meshes.gmsh(file="bracket.msh", unit="mm"), material=steel, thickness=0.004,
+        supports={"bolts": support(nodes="bolts")},
+    )  # fmt: skip
+    pull = machine.add_load_case("pull", {"pin": case_loads.edge(edges="bore", force=[1000, 0, 0])})
+    machine.add_function("moves", functions.displacement(case=pull, nodes="bore", direction=[1, 0, 0]))
+    machine.add_variable("thickness", "/structures/bracket/thickness", lower=0.001, upper=0.01)
+    problem = machine.problem(directory=PROBLEMS)
+    assert 0 < problem.values()[0] < 1e-3
+
+
+def test_frequencies_about_rest() -> None:
+    machine = Machine("pendulum", analysis="rest", gravity=[0, -9.81, 0])
+    rod = machine.add_body("rod", shape=shapes.rod(length=1), mass=2, points={"pin": [-0.5, 0, 0]}, place=place(put="pin"))
+    machine.add_joint("pin", joints.revolute(between=[rod, "ground"], at=[0, 0, 0], axis=[0, 0, 1]))
+    machine.add_function("frequency", functions.frequency(mode=1))
+    machine.add_variable("gravity", "/gravity/1", lower=-20, upper=-1)
+    problem = machine.problem()
+    frequency = problem.values()[0]
+    assert frequency == pytest.approx(math.sqrt(1.5 * 9.81) / (2 * math.pi), rel=1e-3)
+    assert problem.gradients()[0] == pytest.approx([-frequency / 2 / 9.81], rel=1e-9)
 
 
 def pendulum() -> Machine:

@@ -88,7 +88,7 @@ pub struct ExpressionOfFunctions {
     pub expression: String,
 }
 
-/// A function of a motion.
+/// A function of a motion, or of a machine at rest.
 pub enum OfMotion<'a> {
     Ks(&'a Ks),
     InducedExponential(&'a Aggregate),
@@ -103,6 +103,8 @@ pub enum OfMotion<'a> {
     Clearance(&'a Clearance),
     Duration,
     Mass,
+    Frequency(&'a Frequency),
+    LowestFrequency(&'a LowestFrequency),
 }
 
 impl Function {
@@ -130,6 +132,8 @@ impl Function {
             Self::Clearance(own) => Some(OfMotion::Clearance(own)),
             Self::Duration => Some(OfMotion::Duration),
             Self::Mass => Some(OfMotion::Mass),
+            Self::Frequency(own) => Some(OfMotion::Frequency(own)),
+            Self::LowestFrequency(own) => Some(OfMotion::LowestFrequency(own)),
             Self::CentreOfMass(_)
             | Self::MomentOfInertia(_)
             | Self::StrainEnergy(_)
@@ -138,8 +142,6 @@ impl Function {
             | Self::Reaction(_)
             | Self::ReactionMoment(_)
             | Self::VonMises(_)
-            | Self::Frequency(_)
-            | Self::LowestFrequency(_)
             | Self::Expression(_) => None,
         }
     }

@@ -160,6 +160,7 @@ pub(super) fn own_size(at: &Evaluated, f: usize) -> f64 {
             return value.max(largest_datum(series) * value.sqrt());
         }
         Function::Duration => return time,
+        Function::LowestFrequency { .. } => return at.function(f).value.abs(),
         Function::OfDesign { value, .. } => return value.abs().max(1.0),
     };
     let size = match reduction {

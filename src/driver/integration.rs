@@ -480,7 +480,7 @@ pub(super) fn looks_at_the_whole(function: &Function<f64>) -> bool {
             reduction,
         } => !matches!(reduction, Reduction::Final) || during.is_some() || of.looks_around(),
         Function::Misfit { .. } => true,
-        Function::Duration | Function::OfDesign { .. } => false,
+        Function::Duration | Function::LowestFrequency { .. } | Function::OfDesign { .. } => false,
         Function::Clearance { release, .. } => {
             matches!(release, crate::functions::Release::Best { .. })
         }

@@ -42,7 +42,10 @@ pub fn value(problem: &Problem, at: &Evaluated, f: usize, value: f64) -> String 
                 format!(": a datum is at {time} s of the motion, which lasts from 0 to {end} s")
             })
         }
-        Function::Clearance { .. } | Function::Duration | Function::OfDesign { .. } => None,
+        Function::Clearance { .. }
+        | Function::Duration
+        | Function::LowestFrequency { .. }
+        | Function::OfDesign { .. } => None,
     };
     format!(
         "the function \"{name}\" is {value}{}{}",

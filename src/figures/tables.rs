@@ -163,7 +163,9 @@ fn functions(problem: &Problem, simulation: &Simulation) -> String {
                 }
                 continue;
             }
-            Function::Duration | Function::OfDesign { .. } => continue,
+            Function::Duration | Function::LowestFrequency { .. } | Function::OfDesign { .. } => {
+                continue;
+            }
         };
         header.push(format!("{name}: {what} [{unit}]"));
         columns.push(values);

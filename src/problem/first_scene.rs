@@ -222,6 +222,11 @@ fn cannot_assemble(failure: &AssemblyFailure) -> Finding {
             "gravity and loads under which the machine comes to rest",
             "place the bodies nearer to where they rest; look at stiffnesses and loads",
         ),
+        AssemblyFailure::NoModes { .. } => (
+            "/functions".to_owned(),
+            "a stable rest under loads with a potential, and as many modes as functions ask for",
+            "bodies without inertia and free motions have no modes; forces along axes of a body have no potential",
+        ),
         AssemblyFailure::MovedApart { body } => (
             join("/bodies", body),
             "places that are apart, or move together",

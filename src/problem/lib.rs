@@ -431,7 +431,12 @@ impl Problem {
 
     /// The model whose bodies are as placed.
     fn as_placed(&self, x: &[f64]) -> Model<f64> {
-        scene::scene(&self.written, &self.order, &self.extended(x)).model
+        let scene = scene::scene(&self.written, &self.order, &self.extended(x));
+        let mut model = scene.model;
+        if self.is_rest() {
+            scene::without_spin(&self.written, &mut model);
+        }
+        model
     }
 
     /// The fastest growth \[1/s\] of a deformation at the start in equilibrium; `None` if none grows, or

@@ -20,6 +20,7 @@ use crate::schema::functions::{self as written, CountedFrom, Function as Written
 use crate::schema::measured::{Bound as Side, JointReaction, OfSpring, ReactionAxes};
 use crate::schema::mechanics::Point;
 use crate::system::angular_momentum::AngularMomentum;
+use crate::system::equilibrium::Vibration;
 use crate::system::loads::springs::{Spring, SpringPart};
 use crate::system::measures::{End, Wrench, WrenchPart};
 
@@ -35,6 +36,8 @@ pub(super) struct FunctionBuilder<'a, S> {
     pub ends: Vec<(usize, Option<usize>)>,
     /// The axes of the joints on the first of them.
     pub frames: Vec<[Vec3<S>; 3]>,
+    /// Vibrations about rest.
+    pub vibrations: Vec<Vibration<S>>,
     pub x: &'a [S],
 }
 
@@ -85,6 +88,23 @@ impl<S: Scalar> FunctionBuilder<'_, S> {
                 unit: "kg",
                 value: self.mass,
             },
+            OfMotion::Frequency(own) => Function::OfDesign {
+                unit: "Hz",
+                value: self.frequency(own.mode),
+            },
+            OfMotion::LowestFrequency(own) => Function::LowestFrequency {
+                rho: rho_of(own.rho),
+                frequencies: self.vibrations.iter().map(|own| own.frequency).collect(),
+            },
+        }
+    }
+
+    /// A natural frequency \[Hz\]: not a number without rest, nor its derivative where two are equal.
+    fn frequency(&self, mode: usize) -> S {
+        match self.vibrations.get(mode - 1) {
+            None => S::from(f64::NAN),
+            Some(own) if own.repeated => own.frequency + S::of_infinitesimal(f64::NAN),
+            Some(own) => own.frequency,
         }
     }
 
@@ -433,7 +453,9 @@ pub fn released<'a>(
         | OfMotion::Misfit(_)
         | OfMotion::Clearance(_)
         | OfMotion::Duration
-        | OfMotion::Mass => return None,
+        | OfMotion::Mass
+        | OfMotion::Frequency(_)
+        | OfMotion::LowestFrequency(_) => return None,
     };
     // A release is one of the whole run.
     if during.is_some() {

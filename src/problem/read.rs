@@ -107,6 +107,15 @@ pub(super) fn parse(written: &str, file: &str, overrides: &[Override]) -> Result
             Some(whole)
         }
     };
+    // Whether a simulation is missing is only known with the analysis.
+    if structure
+        .findings
+        .iter()
+        .any(|own| own.pointer == "/analysis")
+    {
+        let missing = |own: &Finding| own.pointer.is_empty() && own.found == "no \"simulation\"";
+        structure.findings.retain(|own| !missing(own));
+    }
     source.origins.name_units(&mut structure.numbers);
     findings.extend(structure.findings.iter().cloned());
     let mut sound = document.clone();

@@ -1,5 +1,6 @@
 //! The map from a design to a scene, analytic in the design.
 
+use super::aggregates::rho_of;
 use super::flexible::{FlexibleBodies, HeldPlace};
 use super::mass::mass_properties;
 use super::placement::Assembly;
@@ -14,10 +15,11 @@ use crate::model::{Mobility, Model, RigidBody};
 use crate::quantity::{Vector, vector};
 use crate::schema::Document;
 use crate::schema::flexible::Start;
+use crate::schema::functions::OfMotion;
 use crate::schema::loads::Load;
 use crate::schema::mechanics::{Body, Shape};
 use crate::system::Numbering;
-use crate::system::equilibrium::settle;
+use crate::system::equilibrium::{WantedModes, settle};
 use crate::system::failure::AssemblyFailure;
 use crate::system::placement::guess;
 
@@ -51,7 +53,7 @@ pub fn with_places<S: Scalar>(
     let numbers = FlexibleBodies::weigh(document, &mut model, x);
     let mut unstarted = start(document, &assembly, &mut model, x).err();
     let mut flexible = FlexibleBodies::add(document, &assembly, &mut model, numbers, x);
-    let builder = FunctionBuilder {
+    let mut builder = FunctionBuilder {
         document,
         assembly: &assembly,
         gravity,
@@ -63,11 +65,23 @@ pub fn with_places<S: Scalar>(
         frames: (model.joints.iter())
             .map(|joint| joint.frame_a.axes)
             .collect(),
+        vibrations: Vec::new(),
         x,
     };
     count_turns(document, &builder, &mut model);
     if let (Some(sought), None) = (document.sought(), &unstarted) {
-        unstarted = settle(&mut model, &document.known_starts, sought).err();
+        let wanted = wanted_modes(document);
+        let mobilities: Vec<Mobility> = model.bodies.iter().map(|body| body.mobility).collect();
+        if document.is_rest() {
+            without_spin(document, &mut model);
+        }
+        match settle(&mut model, &document.known_starts, (sought, &wanted)) {
+            Ok(vibrations) => builder.vibrations = vibrations,
+            Err(failure) => unstarted = Some(failure),
+        }
+        for (body, mobility) in model.bodies.iter_mut().zip(mobilities) {
+            body.mobility = mobility;
+        }
     }
     let mut functions: Vec<Function<S>> = document
         .functions
@@ -91,6 +105,32 @@ pub fn with_places<S: Scalar>(
         unstarted,
     };
     (scene, flexible.places)
+}
+
+/// Keeps point masses from turning, which nothing resists or sees.
+pub fn without_spin<S: Scalar>(document: &Document, model: &mut Model<S>) {
+    for (body, written) in model.bodies.iter_mut().zip(document.bodies.values()) {
+        if let Some(Shape::Point) = written.shape {
+            body.mobility = Mobility::point();
+        }
+    }
+}
+
+/// The modes about rest that functions need.
+fn wanted_modes(document: &Document) -> WantedModes {
+    let mut wanted = WantedModes::default();
+    for function in document.functions.values() {
+        match function.of_motion() {
+            Some(OfMotion::Frequency(own)) => wanted.count = wanted.count.max(own.mode),
+            Some(OfMotion::LowestFrequency(own)) => {
+                let rho = rho_of(own.rho);
+                // The smaller one, or the one that is known.
+                wanted.rho = Some(wanted.rho.map_or(rho, |other: f64| other.min(rho)));
+            }
+            _ => {}
+        }
+    }
+    wanted
 }
 
 /// Gives torsion springs counters of their turns, which start as the angles of their joints do.

@@ -8,7 +8,7 @@ use serde_json::Value;
 
 const GRAVITY: f64 = 9.81;
 
-fn rod(length: f64, mass: f64, place: Value) -> Value {
+pub fn rod(length: f64, mass: f64, place: Value) -> Value {
     json!({
         "shape": {"rod": {"length": length, "radius": 0.01}}, "mass": mass,
         "points": {"a": [-0.5 * length, 0, 0], "b": [0.5 * length, 0, 0]}, "place": place
@@ -23,7 +23,7 @@ fn along(body: &str, point: &str, direction: [f64; 3]) -> Value {
     json!({"final": {"position": {"body": body, "point": point, "direction": direction}}})
 }
 
-fn hinge(between: [&str; 2], at: Value) -> Value {
+pub fn hinge(between: [&str; 2], at: Value) -> Value {
     json!({"revolute": {"between": between, "at": at, "axis": [0, 0, 1]}})
 }
 
@@ -33,7 +33,7 @@ fn notes_of(document: &Value) -> Vec<String> {
 }
 
 /// The fault of a document that cannot be read.
-fn fault(document: &Value) -> String {
+pub fn fault(document: &Value) -> String {
     match Problem::parse(&document.to_string(), "rest.json", &[]) {
         Ok(_) => panic!("{document} is read"),
         Err(faults) => faults.to_string(),
@@ -254,6 +254,27 @@ fn a_balanced_lamp_is_neutral() {
     }
 }
 
+/// A point mass has no rotation that would be free.
+#[test]
+fn a_point_mass_does_not_turn() {
+    let notes = notes_of(&json!({
+        "version": 1, "name": "bob", "analysis": "rest",
+        "bodies": {
+            "bar": rod(1.0, 2.0, json!({"put": "a"})),
+            "bob": {"shape": "point", "mass": 0.5, "place": {"at": "bar.b"}}
+        },
+        "joints": {
+            "pin": hinge(["bar", "ground"], json!([0, 0, 0])),
+            "seat": {"spherical": {"between": ["bob", "bar"], "at": "bar.b"}}
+        },
+        "functions": {"y": along("bar", "b", [0.0, 1.0, 0.0])}
+    }));
+    assert!(
+        notes.iter().all(|note| !note.contains("neutral")),
+        "{notes:?}"
+    );
+}
+
 /// What nothing holds is named.
 #[test]
 fn what_nothing_holds_is_named() {
@@ -329,7 +350,7 @@ fn a_cantilever_of_many_beams_is_an_elastica() {
 
 /// Two rods on springs in space: in another order, with the ends of joints exchanged, turned about the vertical by an angle,
 /// in another unit of mass.
-fn machine(reversed: bool, swapped: bool, angle: f64, mass: f64) -> Value {
+pub fn machine(reversed: bool, swapped: bool, angle: f64, mass: f64) -> Value {
     let (s, c) = f64::sin_cos(angle);
     let turned = |[x, y, z]: [f64; 3]| json!([x * c + z * s, y, z * c - x * s]);
     let ends = |a: &'static str, b: &'static str| if swapped { [b, a] } else { [a, b] };
@@ -391,6 +412,20 @@ fn equal_machines_rest_alike() {
         let found = value(other, "span");
         assert!((found / span - 1.0).abs() < 1e-9, "{k}: {found} {span}");
     }
+}
+
+/// A misspelt analysis is one fault, not also that of a missing simulation.
+#[test]
+fn a_misspelt_analysis_is_one_fault() {
+    let mut file = pendulum(0.3, 2.0);
+    file["analysis"] = json!("rset");
+    file["functions"] = json!({"f": {"frequency": {"mode": 1}}});
+    let text = fault(&file);
+    assert!(text.contains("did you mean \"rest\"?"), "{text}");
+    assert!(
+        !text.contains("simulation") && !text.contains("/functions"),
+        "{text}"
+    );
 }
 
 /// Without time: no simulation, velocities, functions of time.

@@ -61,4 +61,5 @@ mod stress_pictures;
 mod thickness_sheet;
 mod trebuchets;
 mod unfollowed;
+mod vibrations_at_rest;
 mod windows;

@@ -52,6 +52,11 @@ impl<S: SolveScalar> Function<S> {
                 None => reduce(of, *reduction, model, run),
                 Some(window) => reduce_during(of, window, *reduction, (model, run)),
             },
+            Function::LowestFrequency { rho, frequencies } => Evaluated {
+                value: -soft_lowest(frequencies, *rho).ks,
+                maximum: None,
+                peak_sharpness: 0.0,
+            },
             Function::OfDesign { value, .. } => Evaluated {
                 value: *value,
                 maximum: None,
@@ -150,6 +155,12 @@ impl Function<Complex64> {
             }
         }
     }
+}
+
+/// The soft maximum of −f_k.
+pub(super) fn soft_lowest<S: SolveScalar>(frequencies: &[S], rho: f64) -> SoftMax<S> {
+    let negative: Vec<S> = frequencies.iter().map(|&f| -f).collect();
+    SoftMax::new(&negative, |_| S::one(), rho)
 }
 
 /// The reduction over a window; NaN if the window is not inside the motion, or empty.

@@ -96,6 +96,13 @@ pub enum Function<S> {
     },
     /// Duration T of the run; with an event, its time \[s\].
     Duration,
+    /// −(1/ρ) ln Σ e^{−ρ f_k} of natural frequencies about rest, not above the lowest one.
+    LowestFrequency {
+        /// Parameter ρ \[s\].
+        rho: f64,
+        /// The frequencies f_k \[Hz\], the lowest first.
+        frequencies: Vec<S>,
+    },
     /// A number that depends only on the design.
     OfDesign {
         /// Its SI unit.
@@ -110,6 +117,7 @@ parameters!(enum Function {
     Clearance {; projectile, release, distance, top },
     Misfit {; series },
     Duration,
+    LowestFrequency { rho; frequencies },
     OfDesign { unit; value },
 });
 
@@ -152,6 +160,7 @@ impl<S: Scalar> Function<S> {
             Function::Clearance { .. } => "m".to_owned(),
             Function::Misfit { .. } => "1".to_owned(),
             Function::Duration => "s".to_owned(),
+            Function::LowestFrequency { .. } => "Hz".to_owned(),
             Function::OfDesign { unit, .. } => (*unit).to_owned(),
         }
     }
@@ -163,6 +172,7 @@ impl<S: Scalar> Function<S> {
             Function::Clearance { .. }
             | Function::Misfit { .. }
             | Function::Duration
+            | Function::LowestFrequency { .. }
             | Function::OfDesign { .. } => None,
         }
     }
@@ -188,7 +198,10 @@ impl<S: Scalar> Function<S> {
                     own.of.for_each(&mut |instant| all.push(instant));
                 }
             }
-            Function::Clearance { .. } | Function::Duration | Function::OfDesign { .. } => {}
+            Function::Clearance { .. }
+            | Function::Duration
+            | Function::LowestFrequency { .. }
+            | Function::OfDesign { .. } => {}
         }
         all
     }
@@ -210,7 +223,10 @@ impl<S: Scalar> Function<S> {
                     own.of.for_each_mut(&mut |instant| all.push(instant));
                 }
             }
-            Function::Clearance { .. } | Function::Duration | Function::OfDesign { .. } => {}
+            Function::Clearance { .. }
+            | Function::Duration
+            | Function::LowestFrequency { .. }
+            | Function::OfDesign { .. } => {}
         }
         all
     }
@@ -229,7 +245,10 @@ impl<S: Scalar> Function<S> {
                 let mut all = series.iter_mut();
                 all.find_map(|own| own.of.nth_mut(&mut left))
             }
-            Function::Clearance { .. } | Function::Duration | Function::OfDesign { .. } => None,
+            Function::Clearance { .. }
+            | Function::Duration
+            | Function::LowestFrequency { .. }
+            | Function::OfDesign { .. } => None,
         }
     }
 
@@ -276,7 +295,7 @@ impl<S: Scalar> Function<S> {
                     instant.for_each_place(visit);
                 }
             }
-            Function::Duration | Function::OfDesign { .. } => {}
+            Function::Duration | Function::LowestFrequency { .. } | Function::OfDesign { .. } => {}
             Function::Clearance {
                 projectile,
                 release,

@@ -1,6 +1,6 @@
 //! Functions linearised about a run, for the adjoint.
 
-use super::evaluate::{mean_flight, release_weights, turning, without_negligible};
+use super::evaluate::{mean_flight, release_weights, soft_lowest, turning, without_negligible};
 use super::function::{Function, Reduction, Release};
 use super::instant::{Instant, Projectile};
 use super::measure::pull_flight;
@@ -47,6 +47,8 @@ pub struct Linearised<'a> {
     by_ends: [f64; 2],
     /// In the offsets of the series of a misfit.
     by_offsets: Vec<f64>,
+    /// In the frequencies of an aggregate of them.
+    by_frequencies: Vec<f64>,
 }
 
 /// Cotangents of a projectile's flight: `cot` times a weight at every instant.
@@ -75,6 +77,7 @@ impl<'a> Linearised<'a> {
             by_barrier: [0.0; 2],
             by_ends: [0.0; 2],
             by_offsets: Vec::new(),
+            by_frequencies: Vec::new(),
         };
         match function {
             Function::Reduced {
@@ -156,6 +159,9 @@ impl<'a> Linearised<'a> {
             },
             Function::Misfit { series } => this.misfit(series, (model, run)),
             Function::Duration => this.by_duration = 1.0,
+            Function::LowestFrequency { rho, frequencies } => {
+                this.by_frequencies = soft_lowest(frequencies, *rho).weights;
+            }
             Function::OfDesign { .. } => {}
         }
         this
@@ -176,6 +182,7 @@ impl<'a> Linearised<'a> {
             by_barrier: [0.0; 2],
             by_ends: [0.0; 2],
             by_offsets: Vec::new(),
+            by_frequencies: Vec::new(),
         };
         if let Some(of) = function.quantity() {
             this.weigh(of, (weights.to_vec(), None), (model, run));
@@ -329,7 +336,7 @@ impl<'a> Linearised<'a> {
             instant.pull_back(at, turn(turns, k), weights[k], out, own);
         };
         match own {
-            Function::Duration | Function::OfDesign { .. } => {}
+            Function::Duration | Function::LowestFrequency { .. } | Function::OfDesign { .. } => {}
             Function::Reduced { .. } | Function::Misfit { .. } => {
                 if let Some(own) = own.instant_mut(which) {
                     pull(own);
@@ -385,6 +392,11 @@ impl<'a> Linearised<'a> {
             Function::Clearance { distance, top, .. } => {
                 *distance += self.by_barrier[0];
                 *top += self.by_barrier[1];
+            }
+            Function::LowestFrequency { frequencies, .. } => {
+                for (f, by) in frequencies.iter_mut().zip(&self.by_frequencies) {
+                    *f += by;
+                }
             }
             Function::OfDesign { value, .. } => *value += 1.0,
             Function::Reduced {

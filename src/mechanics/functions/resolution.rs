@@ -201,7 +201,9 @@ fn sum_of(
                 .collect();
             return parts.into_iter().reduce(Sum::with);
         }
-        Function::Duration | Function::OfDesign { .. } => return None,
+        Function::Duration | Function::LowestFrequency { .. } | Function::OfDesign { .. } => {
+            return None;
+        }
     };
     Some(sum_over(scene, (&of, rho), (run, nodes), goal))
 }

@@ -63,6 +63,7 @@ impl TerminalEvent<f64> {
             Function::Clearance { .. } => "clearance".into(),
             Function::Misfit { .. } => "misfit".into(),
             Function::Duration => "duration".into(),
+            Function::LowestFrequency { .. } => "lowest frequency".into(),
             Function::OfDesign { .. } => "design".into(),
         }
     }

@@ -72,6 +72,10 @@ fn stands_for(
             (value, value.abs())
         }
         (None, Function::Reduced { .. }) => return None,
+        (None, Function::LowestFrequency { frequencies, .. }) => {
+            let lowest = *frequencies.first()?;
+            (lowest, lowest)
+        }
         (None, Function::Misfit { .. } | Function::Duration | Function::OfDesign { .. }) => {
             return None;
         }
@@ -94,6 +98,7 @@ fn rhos(function: &Function<f64>) -> Vec<f64> {
             Release::Best { rho, .. } => (Some(*rho), None),
             Release::Final => (None, None),
         },
+        Function::LowestFrequency { rho, .. } => (Some(*rho), None),
         Function::Misfit { .. } | Function::Duration | Function::OfDesign { .. } => (None, None),
     };
     let over_points = instant.and_then(|instant| match instant {
@@ -126,6 +131,7 @@ fn sharpened(function: &Function<f64>, factor: f64) -> Function<f64> {
             Release::Best { rho, .. } => *rho *= factor,
             Release::Final => {}
         },
+        Function::LowestFrequency { rho, .. } => *rho *= factor,
         Function::Misfit { .. } | Function::Duration | Function::OfDesign { .. } => {}
     }
     out

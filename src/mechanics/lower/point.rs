@@ -172,7 +172,9 @@ fn looks_at<S: Scalar>(scene: &Scene<S>, function: &Function<S>) -> Vec<(usize, 
             let all = function.instants().into_iter();
             all.flat_map(of_instant).collect()
         }
-        Function::Duration | Function::OfDesign { .. } => Vec::new(),
+        Function::Duration | Function::LowestFrequency { .. } | Function::OfDesign { .. } => {
+            Vec::new()
+        }
         Function::Clearance {
             projectile,
             release,

@@ -92,6 +92,12 @@ pub enum AssemblyFailure {
         /// Number of iterations.
         iterations: usize,
     },
+    /// Rest has no such modes of vibration.
+    #[error("no natural frequencies about rest: {why}")]
+    NoModes {
+        /// The reason.
+        why: String,
+    },
     /// The equations are singular or not finite for another reason.
     #[error(
         "the equations of motion are singular to working precision at this placement, though joints \

@@ -71,7 +71,10 @@ impl Checker<'_> {
             OfMotion::Ks(own) => own.during.is_some(),
             OfMotion::InducedExponential(own) => own.during.is_some(),
             OfMotion::Final(over) => windowed(over),
-            OfMotion::Clearance(_) | OfMotion::Mass => false,
+            OfMotion::Clearance(_)
+            | OfMotion::Mass
+            | OfMotion::Frequency(_)
+            | OfMotion::LowestFrequency(_) => false,
             OfMotion::Integral(_)
             | OfMotion::Mean(_)
             | OfMotion::MeanSquare(_)
@@ -83,7 +86,7 @@ impl Checker<'_> {
         };
         if of_time {
             let found = "a function of time, of a machine at rest";
-            let expected = "\"final\", the value at rest; \"ks\" over points; \"mass\"; or expressions of them";
+            let expected = "\"final\", the value at rest; \"ks\" over points; \"mass\"; \"frequency\"; or expressions of them";
             self.fault(Finding::new(pointer, found, expected).of_key());
         }
     }

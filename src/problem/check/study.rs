@@ -171,6 +171,13 @@ impl Checker<'_> {
             self.at_rest(pointer, &function);
         }
         match function {
+            OfMotion::Frequency(_) | OfMotion::LowestFrequency(_) => {
+                if !self.document.is_rest() && !self.damage.touches("analysis") {
+                    let found = "a natural frequency of a machine in motion";
+                    let expected = "\"analysis\": \"rest\", about which the machine vibrates";
+                    self.fault(Finding::new(pointer, found, expected).of_key());
+                }
+            }
             OfMotion::Clearance(clearance) => {
                 self.clearance(&format!("{pointer}/clearance"), clearance);
             }

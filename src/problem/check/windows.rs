@@ -51,7 +51,11 @@ impl Checker<'_> {
                     self.instant(&join(&join(&pointer, name), "of"), &series.of);
                 }
             }
-            OfMotion::Clearance(_) | OfMotion::Duration | OfMotion::Mass => {}
+            OfMotion::Clearance(_)
+            | OfMotion::Duration
+            | OfMotion::Mass
+            | OfMotion::Frequency(_)
+            | OfMotion::LowestFrequency(_) => {}
         }
     }
 

@@ -270,20 +270,20 @@ impl<'a> Layout<'a> {
     }
 
     /// The bodies at positions q, without velocity.
-    pub(super) fn at_rest(&self, q: &[f64]) -> Vec<BodyMotion<f64>> {
+    pub(super) fn at_rest<S: Scalar>(&self, q: &[S]) -> Vec<BodyMotion<S>> {
         let mut motions = Vec::new();
-        let still = vec![0.0; self.numbering.velocities()];
+        let still = vec![S::zero(); self.numbering.velocities()];
         BodyMotion::all(self.numbering, q, &still, &mut motions);
         motions
     }
 
     /// M(q) y, both for unknowns of velocity.
-    pub(super) fn mass_product(
+    pub(super) fn mass_product<S: Scalar>(
         &self,
-        model: &Model<f64>,
-        motions: &[BodyMotion<f64>],
-        y: &[f64],
-    ) -> Vec<f64> {
+        model: &Model<S>,
+        motions: &[BodyMotion<S>],
+        y: &[S],
+    ) -> Vec<S> {
         let y = self.expanded(y.to_vec());
         self.compressed(mass_product(model, self.numbering, motions, &y))
     }

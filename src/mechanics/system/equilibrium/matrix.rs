@@ -3,6 +3,7 @@
 
 use super::equations::{Layout, State};
 use crate::linalg::{Emit, KnownPivots, Pattern, SingularMatrix, SparseLu, SparseMatrix};
+use crate::math::Scalar;
 use crate::model::{Model, RigidBody};
 use crate::system::bodies::BodyMotion;
 use crate::system::emit_bodies::{Rates, emit_force_balance};
@@ -108,6 +109,36 @@ fn emit_chosen(
     });
 }
 
+/// uᵀ A u for the matrix A = [K, Gᵀ; G, 0] of rest, in any scalar.
+pub(super) fn contracted<S: Scalar>(
+    layout: &Layout,
+    (model, x): (&Model<S>, &State<S>),
+    u: &[f64],
+) -> S {
+    let mut product = Contracted { u, sum: S::zero() };
+    let places = &places(layout);
+    let mut chosen = Chosen {
+        places,
+        emit: &mut product,
+    };
+    emit_reduced(layout.numbering, PARTS, &mut chosen, |emit| {
+        emit_balance(layout, (model, x), emit);
+    });
+    product.sum
+}
+
+/// Sums u_i a_ij u_j over the entries.
+struct Contracted<'a, S> {
+    u: &'a [f64],
+    sum: S,
+}
+
+impl<S: Scalar> Emit<S> for Contracted<'_, S> {
+    fn add(&mut self, row: usize, column: usize, value: S) {
+        self.sum += value * (self.u[row] * self.u[column]);
+    }
+}
+
 /// The place of each reduced row or column among the unknowns; `None` of those that are no
 /// unknowns.
 fn places(layout: &Layout) -> Vec<Option<usize>> {
@@ -134,13 +165,13 @@ fn places(layout: &Layout) -> Vec<Option<usize>> {
 }
 
 /// Passes entries of the unknowns on.
-struct Chosen<'a> {
+struct Chosen<'a, S> {
     places: &'a [Option<usize>],
-    emit: &'a mut dyn Emit<f64>,
+    emit: &'a mut dyn Emit<S>,
 }
 
-impl Emit<f64> for Chosen<'_> {
-    fn add(&mut self, row: usize, column: usize, value: f64) {
+impl<S: Scalar> Emit<S> for Chosen<'_, S> {
+    fn add(&mut self, row: usize, column: usize, value: S) {
         if let (Some(row), Some(column)) = (self.places[row], self.places[column]) {
             self.emit.add(row, column, value);
         }
@@ -161,11 +192,52 @@ impl Emit<f64> for OfRigid<'_> {
     }
 }
 
+/// The rows of the balance and of the constraints.
+fn emit_balance<S: Scalar>(
+    layout: &Layout,
+    (model, x): (&Model<S>, &State<S>),
+    emit: &mut dyn Emit<S>,
+) {
+    let numbering = layout.numbering;
+    let nv = numbering.velocities();
+    let (y, v, lambda) = (0, 2 * nv, 3 * nv);
+    let (mut motions, mut gradients) = (Vec::new(), Vec::new());
+    let speeds = layout.of_rigid(&x.v);
+    BodyMotion::all(numbering, &x.q, &speeds, &mut motions);
+    let here = InMotion::new(model, numbering, &motions, S::zero());
+    joints::gradients(&here, &mut gradients);
+    layout.left_out.clear_gradients(&mut gradients);
+    let rates = Rates {
+        by_state: S::zero(),
+        h: S::one(),
+    };
+    emit_force_balance(&here, (y, v), rates, emit);
+    let accelerations = layout.of_rigid(&x.a);
+    let at = (&motions[..], &accelerations[..]);
+    let whole = (S::one(), S::one());
+    flexible::emit_force_balances((model, numbering), at, (y, y, v), whole, emit);
+    let to = LoadEntries {
+        row: y,
+        y,
+        v,
+        by_y: -S::one(),
+        by_v: -S::one(),
+    };
+    loads::emit_jacobian(&here, &to, emit);
+    emit_reaction_jacobian(&here, &x.lambda, (y, y), S::one(), emit);
+    emit_transposed_gradients(model, numbering, &gradients, (y, lambda), S::one(), emit);
+    emit_gradients(model, numbering, &gradients, (lambda, y), emit);
+    for row in layout.left_out.numbers() {
+        emit.add(lambda + row, lambda + row, S::one());
+    }
+}
+
 fn emit_matrix(
     layout: &Layout,
     (model, x, shift): (&Model<f64>, &State<f64>, f64),
     emit: &mut dyn Emit<f64>,
 ) {
+    emit_balance(layout, (model, x), emit);
     let numbering = layout.numbering;
     let (nv, nc) = (numbering.velocities(), numbering.constraints());
     let (y, a, v, lambda) = (0, nv, 2 * nv, 3 * nv);
@@ -173,33 +245,7 @@ fn emit_matrix(
     let (mut motions, mut gradients) = (Vec::new(), Vec::new());
     let speeds = layout.of_rigid(&x.v);
     BodyMotion::all(numbering, &x.q, &speeds, &mut motions);
-    let here = InMotion::new(model, numbering, &motions, 0.0);
-    joints::gradients(&here, &mut gradients);
-    layout.left_out.clear_gradients(&mut gradients);
     let of = (model, numbering);
-
-    let rates = Rates {
-        by_state: 0.0,
-        h: 1.0,
-    };
-    emit_force_balance(&here, (y, v), rates, emit);
-    let accelerations = layout.of_rigid(&x.a);
-    let at = (&motions[..], &accelerations[..]);
-    flexible::emit_force_balances(of, at, (y, y, v), (1.0, 1.0), emit);
-    let to = LoadEntries {
-        row: y,
-        y,
-        v,
-        by_y: -1.0,
-        by_v: -1.0,
-    };
-    loads::emit_jacobian(&here, &to, emit);
-    emit_reaction_jacobian(&here, &x.lambda, (y, y), 1.0, emit);
-    emit_transposed_gradients(model, numbering, &gradients, (y, lambda), 1.0, emit);
-    emit_gradients(model, numbering, &gradients, (lambda, y), emit);
-    for row in layout.left_out.numbers() {
-        emit.add(lambda + row, lambda + row, 1.0);
-    }
     if layout.is_rest() {
         let metric = RigidMetric::of(model);
         for (i, body) in model.bodies.iter().enumerate() {
@@ -212,6 +258,9 @@ fn emit_matrix(
         return;
     }
 
+    let here = InMotion::new(model, numbering, &motions, 0.0);
+    joints::gradients(&here, &mut gradients);
+    layout.left_out.clear_gradients(&mut gradients);
     let mut elastic = vec![false; 3 * nv];
     for (carrier, k) in model.flexible.iter().flat_map(|body| body.places()) {
         let at = numbering.velocity(carrier) + k;

@@ -22,6 +22,7 @@
 mod descent;
 mod equations;
 mod matrix;
+mod modes;
 mod rest;
 mod ritz;
 mod stability;
@@ -40,6 +41,8 @@ use crate::math::{Parameters, Scalar};
 use crate::model::{Mobility, Model};
 use equations::{Layout, State};
 use matrix::Factors;
+use modes::{Mode, vibrations};
+pub use modes::{Vibration, WantedModes};
 pub use rest::{Stability, stability};
 pub use stability::growth;
 use std::sync::{Arc, Mutex};
@@ -83,6 +86,7 @@ pub struct KnownStarts(Arc<Mutex<Known>>);
 struct Known {
     states: Vec<(Vec<f64>, State<f64>)>,
     factors: Option<(Vec<f64>, Factors)>,
+    modes: Option<(Vec<f64>, Vec<Mode>)>,
 }
 
 impl KnownStarts {
@@ -131,19 +135,19 @@ impl KnownStarts {
 }
 
 /// Moves the bodies of `model`, which are placed and undeformed, to the quasi-static start, and gives them velocities
-/// without vibration; or to rest.
+/// without vibration; or to rest. Gives the lowest vibrations about rest that are wanted.
 ///
 /// # Errors
-/// Joints that cannot be closed, or no equilibrium.
+/// Joints that cannot be closed, no equilibrium, or no such modes.
 pub fn settle<S: Scalar>(
     model: &mut Model<S>,
     known: &KnownStarts,
-    sought: Sought,
-) -> Result<(), AssemblyFailure> {
+    (sought, modes): (Sought, &WantedModes),
+) -> Result<Vec<Vibration<S>>, AssemblyFailure> {
     let own = without_spin(model);
     let numbering = Numbering::new(&own);
     let of = (&own, &numbering, sought);
-    let (state, v) = with_solution(of, known, |given, solver, found| {
+    let (state, v, vibrations) = with_solution(of, known, |given, solver, found| {
         let layout = solver.layout;
         let mut state: State<S> = found.map(S::from);
         if S::INFINITESIMAL {
@@ -160,7 +164,14 @@ pub fn settle<S: Scalar>(
             layout.advance(&mut state, &change);
         }
         let v = layout.of_rigid(&state.v);
-        Ok((state, v))
+        let vibrations = match modes.is_empty() {
+            true => Vec::new(),
+            false => {
+                let modes = solver.known_modes(found, modes)?;
+                vibrations(layout, (&own, &state), &modes)
+            }
+        };
+        Ok((state, v, vibrations))
     })?;
     for (i, body) in model.bodies.iter_mut().enumerate() {
         (body.position, body.orientation) = positions_of(&state.q[numbering.position(i)..]);
@@ -168,7 +179,7 @@ pub fn settle<S: Scalar>(
             (body.velocity, body.angular_velocity) = velocities_of(&v[numbering.velocity(i)..]);
         }
     }
-    Ok(())
+    Ok(vibrations)
 }
 
 /// The model with point masses that do not rotate.
@@ -298,6 +309,20 @@ impl Solver<'_> {
         let out = of(&mut factors);
         self.known.keep_factors(self.numbers.clone(), factors);
         Ok(out)
+    }
+
+    /// The lowest modes at a solution, which become known.
+    fn known_modes(
+        &self,
+        found: &State<f64>,
+        wanted: &WantedModes,
+    ) -> Result<Vec<Mode>, AssemblyFailure> {
+        if let Some(modes) = self.known.modes(&self.numbers) {
+            return Ok(modes);
+        }
+        let modes = self.with_factors(found, |factors| self.modes(factors, found, wanted))??;
+        self.known.keep_modes(&self.numbers, &modes);
+        Ok(modes)
     }
 
     /// Newton's method from the placement. The solution becomes known.

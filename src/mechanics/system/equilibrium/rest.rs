@@ -146,8 +146,13 @@ impl Solver<'_> {
         Ok(out)
     }
 
+    /// Whether a motion with this stiffness \[1/s²\] is free.
+    pub(super) fn is_free(&self, stiffness: f64, found: &State<f64>) -> bool {
+        stiffness.abs() <= FREE * found.rate
+    }
+
     /// Motions y with K y = λ M̃ y on G y = 0 and their λ, those with λ below the least σ, with the factors of a solution.
-    fn soft_motions(
+    pub(super) fn soft_motions(
         &self,
         factors: &mut Factors,
         found: &State<f64>,

@@ -1,0 +1,340 @@
+//! Natural frequencies of a machine about its rest, without damping: motions y with
+//!
+//! ```text
+//! K y + Gᵀ μ = ω² M y,     G y = 0,     K = −∂f/∂q + ∂(Gᵀ λ)/∂q
+//! ```
+//!
+//! K is symmetric if the loads have a potential. The largest eigenvalues 1 / (ω² + σ) of [K + σ M̃, Gᵀ; G, 0]⁻¹ M by
+//! Lanczos, then Rayleigh and Ritz with K itself in their space. With yᵀ M y = 1 an eigenvalue has the derivative
+//!
+//! ```text
+//! dω² = yᵀ (dK − ω² dM) y + 2 μᵀ dG y
+//! ```
+//!
+//! along the change of rest, so it is exact to first order where y and μ stay.
+
+use super::equations::{Layout, State};
+use super::matrix::{Factors, contracted};
+use super::{KnownStarts, Solver};
+use crate::math::Scalar;
+use crate::math::slices::{add_scaled, dot};
+use crate::model::Model;
+use crate::structures::modes::{Basis, Operator, largest};
+use crate::system::bodies::BodyMotion;
+use crate::system::failure::AssemblyFailure;
+use nalgebra::{DMatrix, SymmetricEigen};
+
+/// Modes beyond the requested ones, whose space improves these.
+const SPARE: usize = 3;
+/// Part of the stiffness that may be asymmetric by round-off.
+const ASYMMETRIC: f64 = 1e-7;
+/// Relative distance of ω² below which two modes count as one; and of eigenvalues that are equal.
+const REPEATED: f64 = 1e-6;
+const SAME: f64 = 1e-9;
+
+/// Inverse iterations of a free motion.
+const INVERSE: usize = 4;
+/// Most modes of an aggregate, its first number of them, and the largest ρ (f − f_1) of one that counts.
+const MOST: usize = 160;
+const FIRST: usize = 6;
+const NEGLIGIBLE: f64 = 38.0;
+
+/// The modes that functions need.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub struct WantedModes {
+    /// So many of the lowest.
+    pub count: usize,
+    /// All up to ρ (f − f_1) = 38, beyond which their weights are round-off; the smallest ρ \[s\].
+    pub rho: Option<f64>,
+}
+
+impl WantedModes {
+    /// Whether none are wanted.
+    pub fn is_empty(&self) -> bool {
+        self.count == 0 && self.rho.is_none()
+    }
+
+    fn least(&self) -> usize {
+        self.count.max(if self.rho.is_some() { FIRST } else { 0 })
+    }
+
+    fn suffice(&self, modes: &[Mode]) -> bool {
+        let frequency = |mode: &Mode| mode.square.max(0.0).sqrt() / (2.0 * std::f64::consts::PI);
+        let (Some(rho), Some(first), Some(last)) = (self.rho, modes.first(), modes.last()) else {
+            return true;
+        };
+        let reach = rho * (frequency(last) - frequency(first));
+        // A ρ that is still to be chosen is not a number.
+        reach.is_nan() || reach > NEGLIGIBLE
+    }
+}
+
+/// A mode of the machine.
+#[derive(Clone, Debug)]
+pub(super) struct Mode {
+    /// ω² \[1/s²\].
+    square: f64,
+    /// y and μ, with yᵀ M y = 1.
+    shape: Vec<f64>,
+    /// Whether another one has the same frequency, so that it has no derivative.
+    repeated: bool,
+}
+
+/// (K + σ M̃)⁻¹ M on the motions that the joints allow.
+struct Softened<'a> {
+    solver: &'a Solver<'a>,
+    motions: &'a [BodyMotion<f64>],
+    factors: &'a mut Factors,
+}
+
+impl Operator for Softened<'_> {
+    fn order(&self) -> usize {
+        self.solver.layout.numbering.unknowns()
+    }
+
+    fn mass(&self, x: &[f64], y: &mut [f64]) {
+        let Solver { layout, model, .. } = self.solver;
+        y.copy_from_slice(&layout.mass_product(model, self.motions, x));
+    }
+
+    fn solve(&mut self, b: &mut [f64]) {
+        let n = self.order();
+        for column in b.chunks_exact_mut(n.max(1)) {
+            let mut x = column.to_vec();
+            x.resize(self.solver.layout.order(), 0.0);
+            self.factors.solve(&mut x);
+            column.copy_from_slice(&x[..n]);
+        }
+    }
+}
+
+impl Softened<'_> {
+    /// The eigenvectors of the largest eigenvalues, at least `count` of them if there are as many, without those that are
+    /// `known`; and whether there are no others.
+    fn largest(&mut self, known: &Basis, count: usize) -> (Vec<Vec<f64>>, bool) {
+        let mut known = Basis {
+            vectors: known.vectors.clone(),
+            products: known.products.clone(),
+        };
+        let found = largest(self, &known, count, 1);
+        let mut least = f64::INFINITY;
+        let mut all = found.vectors;
+        for y in &all {
+            least = least.min(self.quotient(y));
+            known.push(self, y.clone(), 0.0);
+        }
+        // Copies of an eigenvalue beyond the size of a block are missed.
+        for seed in 2.. {
+            let more = largest(self, &known, 1, seed).vectors.pop();
+            let Some(y) = more.filter(|_| found.exhausted || all.len() >= count) else {
+                break;
+            };
+            if !found.exhausted && self.quotient(&y) < least * (1.0 - SAME) {
+                break;
+            }
+            known.push(self, y.clone(), 0.0);
+            all.push(y);
+        }
+        (all, found.exhausted)
+    }
+
+    /// The Rayleigh quotient of (K + σ M̃)⁻¹ M.
+    fn quotient(&mut self, y: &[f64]) -> f64 {
+        let mut heavy = vec![0.0; y.len()];
+        self.mass(y, &mut heavy);
+        let mut softened = heavy.clone();
+        self.solve(&mut softened);
+        dot(&heavy, &softened) / dot(&heavy, y)
+    }
+}
+
+impl Solver<'_> {
+    /// The lowest modes at a solution that are wanted, with its factors. Free motions do not count.
+    ///
+    /// # Errors
+    /// Rest is not stable, loads have no potential, or there are fewer modes.
+    pub(super) fn modes(
+        &self,
+        factors: &mut Factors,
+        found: &State<f64>,
+        wanted: &WantedModes,
+    ) -> Result<Vec<Mode>, AssemblyFailure> {
+        let none = |why: String| Err(AssemblyFailure::NoModes { why });
+        let motions = self.layout.at_rest(&found.q);
+        let mut softened = Softened {
+            solver: self,
+            motions: &motions,
+            factors,
+        };
+        let mut free = Basis::default();
+        for (stiffness, y) in self.soft_motions(softened.factors, found)? {
+            if stiffness < 0.0 && !self.is_free(stiffness, found) {
+                return none("it is not stable".into());
+            }
+            let mut y = self.purified(softened.factors, &motions, y);
+            free.orthogonalise(&mut y);
+            free.push(&softened, y, 0.0);
+        }
+        let mut count = wanted.least();
+        loop {
+            let (space, all) = softened.largest(&free, count + SPARE);
+            let there = space.len();
+            if there < if all { wanted.count.max(1) } else { count } {
+                return none(match all {
+                    true => format!(
+                        "mode {} is asked for, and there are {there}",
+                        wanted.count.max(1)
+                    ),
+                    false => format!("only {there} modes converge"),
+                });
+            }
+            let mut modes = self.ritz(&mut softened, found, space)?;
+            modes.truncate(count);
+            if all || wanted.suffice(&modes) {
+                return Ok(modes);
+            }
+            if count >= MOST {
+                return none(format!(
+                    "more than {MOST} modes are within reach of ρ; a larger one needs fewer"
+                ));
+            }
+            count = (2 * count).min(MOST);
+        }
+    }
+
+    /// A free motion without its parts along others, which inverse iteration makes smaller by σ / (λ + σ) each time.
+    fn purified(
+        &self,
+        factors: &mut Factors,
+        motions: &[BodyMotion<f64>],
+        mut y: Vec<f64>,
+    ) -> Vec<f64> {
+        for _ in 0..INVERSE {
+            let mut next = self.metric_product(motions, &y);
+            next.resize(self.layout.order(), 0.0);
+            factors.solve(&mut next);
+            next.truncate(y.len());
+            let size = dot(&next, &next).sqrt();
+            y = next.into_iter().map(|x| x / size).collect();
+        }
+        y
+    }
+
+    /// The modes in the space of some motions.
+    fn ritz(
+        &self,
+        softened: &mut Softened,
+        found: &State<f64>,
+        space: Vec<Vec<f64>>,
+    ) -> Result<Vec<Mode>, AssemblyFailure> {
+        let (layout, model) = (self.layout, self.model);
+        let n = layout.numbering.unknowns();
+        let along = layout.along(model, self.given, found);
+        // Shapes with their multipliers, K y + Gᵀ μ and M y.
+        let columns: Vec<[Vec<f64>; 3]> = (space.into_iter())
+            .map(|y| {
+                let mut shape = layout.mass_product(model, softened.motions, &y);
+                shape.resize(layout.order(), 0.0);
+                softened.factors.solve(&mut shape);
+                let stiff = along.product(&shape)[..n].to_vec();
+                let heavy = layout.mass_product(model, softened.motions, &shape[..n]);
+                let size = dot(&shape[..n], &heavy).sqrt();
+                [shape, stiff, heavy].map(|x| x.into_iter().map(|x| x / size).collect())
+            })
+            .collect();
+        let there = columns.len();
+        // Gᵀ μ does no work in motions with G y = 0.
+        let gram = |which: usize| {
+            let product = |i: usize, j: usize| dot(&columns[i][0][..n], &columns[j][which]);
+            DMatrix::from_fn(there, there, product)
+        };
+        let (stiffness, mass) = (gram(1), gram(2));
+        if (&stiffness - stiffness.transpose()).norm() > ASYMMETRIC * stiffness.norm() {
+            let why = "a load that turns with its body has no potential".into();
+            return Err(AssemblyFailure::NoModes { why });
+        }
+        let (squares, parts) = pencil(&stiffness, mass).ok_or(AssemblyFailure::Singular)?;
+        let near = |a: usize, b: usize| match (squares.get(a), squares.get(b)) {
+            (Some(a), Some(b)) => (b - a).abs() <= REPEATED * b.abs(),
+            _ => false,
+        };
+        let one = |(k, &square): (usize, &f64)| {
+            let mut shape = vec![0.0; layout.order()];
+            for (own, part) in columns.iter().zip(parts.column(k).iter()) {
+                add_scaled(&mut shape, *part, &own[0]);
+            }
+            Mode {
+                square,
+                shape,
+                repeated: near(k, k + 1) || k > 0 && near(k - 1, k),
+            }
+        };
+        Ok(squares.iter().enumerate().map(one).collect())
+    }
+}
+
+/// Eigenvalues of K z = λ M z in rising order, and their vectors with zᵀ M z = 1; `None` if M is not positive.
+fn pencil(stiffness: &DMatrix<f64>, mass: DMatrix<f64>) -> Option<(Vec<f64>, DMatrix<f64>)> {
+    let lower = mass.cholesky()?.l();
+    let half = lower.solve_lower_triangular(stiffness)?;
+    let reduced = lower.solve_lower_triangular(&half.transpose())?;
+    let eigen = SymmetricEigen::new((&reduced + reduced.transpose()) * 0.5);
+    let mut order: Vec<usize> = (0..eigen.eigenvalues.len()).collect();
+    order.sort_by(|&a, &b| eigen.eigenvalues[a].total_cmp(&eigen.eigenvalues[b]));
+    let vectors = eigen.eigenvectors.select_columns(&order);
+    let parts = lower.transpose().solve_upper_triangular(&vectors)?;
+    Some((order.iter().map(|&k| eigen.eigenvalues[k]).collect(), parts))
+}
+
+/// A vibration about rest.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Vibration<S> {
+    /// Natural frequency \[Hz\].
+    pub frequency: S,
+    /// Whether another one has the same, so that it has no derivative of its own; sums over both have one.
+    pub repeated: bool,
+}
+
+/// The vibrations of modes in any scalar, at a solution in it, exact to first order.
+pub(super) fn vibrations<S: Scalar>(
+    layout: &Layout,
+    (model, x): (&Model<S>, &State<S>),
+    modes: &[Mode],
+) -> Vec<Vibration<S>> {
+    let n = layout.numbering.unknowns();
+    let motions = layout.at_rest(&x.q);
+    let change = |mode: &Mode| {
+        let y: Vec<S> = mode.shape[..n].iter().map(|&y| S::from(y)).collect();
+        let heavy = layout.mass_product(model, &motions, &y);
+        let kinetic = (heavy.iter().zip(&mode.shape)).fold(S::zero(), |sum, (&a, &b)| sum + a * b);
+        let stiff = contracted(layout, (model, x), &mode.shape);
+        // The real part is zero but for what is not converged.
+        (stiff - kinetic * mode.square).infinitesimal()
+    };
+    let one = |mode: &Mode| {
+        let mut square = S::from(mode.square);
+        if S::INFINITESIMAL {
+            square += S::of_infinitesimal(change(mode));
+        }
+        Vibration {
+            frequency: square.sqrt() / S::from(2.0 * std::f64::consts::PI),
+            repeated: mode.repeated,
+        }
+    };
+    modes.iter().map(one).collect()
+}
+
+impl KnownStarts {
+    /// The known modes of these numbers. One document always wants the same.
+    pub(super) fn modes(&self, numbers: &[f64]) -> Option<Vec<Mode>> {
+        let known = self.0.lock().ok()?;
+        let (own, modes) = known.modes.as_ref()?;
+        (own == numbers).then(|| modes.clone())
+    }
+
+    pub(super) fn keep_modes(&self, numbers: &[f64], modes: &[Mode]) {
+        if let Ok(mut known) = self.0.lock() {
+            known.modes = Some((numbers.to_vec(), modes.to_vec()));
+        }
+    }
+}

@@ -1,0 +1,364 @@
+//! Natural frequencies of machines about their rest: closed forms, independent eigenvalues, families, derivatives, and
+//! what has none.
+
+use super::machines_at_rest::{fault, hinge, machine, rod};
+use crate::reference::documents::{problem as parsed, values};
+use crate::reference::gradients::gradients_are_exact;
+use flexbody_driver::{Simulated, check};
+use nalgebra::{DMatrix, SymmetricEigen};
+use serde_json::Value;
+use std::f64::consts::PI;
+
+const GRAVITY: f64 = 9.81;
+
+fn frequencies(count: usize) -> Value {
+    let one = |mode: usize| (format!("f{mode}"), json!({"frequency": {"mode": mode}}));
+    (1..=count)
+        .map(one)
+        .collect::<serde_json::Map<_, _>>()
+        .into()
+}
+
+fn assert_near(found: &[f64], expected: &[f64], part: f64) {
+    assert_eq!(found.len(), expected.len());
+    for (f, e) in found.iter().zip(expected) {
+        assert!((f - e).abs() <= part * e.abs(), "{found:?} {expected:?}");
+    }
+}
+
+/// Links of length L and mass m that hang from each other.
+fn chain(n: usize, length: f64, mass: f64) -> Value {
+    let (mut bodies, mut joints) = (serde_json::Map::new(), serde_json::Map::new());
+    for k in 0..n {
+        let (name, before) = (format!("l{k}"), format!("l{}", k.wrapping_sub(1)));
+        let at = match k {
+            0 => json!([0, 0, 0]),
+            _ => json!(format!("{before}.b")),
+        };
+        let other = if k == 0 { "ground" } else { &before };
+        // Placed askew.
+        let turn = json!({"axis": [0, 0, 1], "angle": -1.2 + 0.1 * k as f64});
+        let place = json!({"put": "a", "at": at, "turn": turn});
+        bodies.insert(name.clone(), rod(length, mass, place));
+        joints.insert(
+            format!("j{k}"),
+            hinge([&name, other], json!(format!("{name}.a"))),
+        );
+    }
+    json!({
+        "version": 1, "name": "chain", "analysis": "rest",
+        "bodies": bodies, "joints": joints, "functions": frequencies(n)
+    })
+}
+
+/// M_ij = m L² (n − 1 − max(i, j) + ½), with ⅓ on the diagonal, and K_ii = m g L (n − 1 − i + ½). Two links have ω² = 3 (1 ± 2 / √7)
+/// g / L.
+#[test]
+fn a_hanging_chain_has_the_frequencies_of_its_angles() {
+    let (length, mass) = (0.7, 1.3);
+    for n in [1, 2, 3, 5] {
+        let inertia = DMatrix::from_fn(n, n, |i, j| {
+            let below = (n - 1 - i.max(j)) as f64;
+            mass * length * length * (below + if i == j { 1.0 / 3.0 } else { 0.5 })
+        });
+        let lower = inertia.cholesky().expect("inertia").l();
+        let stiffness = DMatrix::from_fn(n, n, |i, j| match i == j {
+            true => mass * GRAVITY * length * ((n - 1 - i) as f64 + 0.5),
+            false => 0.0,
+        });
+        let inverse = lower.try_inverse().expect("regular");
+        let eigen = SymmetricEigen::new(&inverse * stiffness * inverse.transpose());
+        let mut expected: Vec<f64> = eigen
+            .eigenvalues
+            .iter()
+            .map(|x| x.sqrt() / (2.0 * PI))
+            .collect();
+        expected.sort_by(f64::total_cmp);
+        if n == 2 {
+            let of =
+                |sign: f64| (3.0 * (1.0 + sign * 2.0 / 7.0_f64.sqrt()) * GRAVITY / length).sqrt();
+            assert_near(
+                &expected,
+                &[of(-1.0) / (2.0 * PI), of(1.0) / (2.0 * PI)],
+                1e-12,
+            );
+        }
+        // Rods have a radius.
+        let found = values(&chain(n, length, mass));
+        assert_near(&found, &expected, 1e-3);
+    }
+}
+
+/// Two carts between three springs.
+fn carts(stiffness: [f64; 3], masses: [f64; 2]) -> Value {
+    let cart = |x: f64, mass: f64| json!({"shape": {"box": {"size": [0.2, 0.1, 0.1]}}, "mass": mass, "place": {"at": [x, 0, 0]}});
+    let rail = |body: &str| json!({"prismatic": {"between": [body, "ground"], "at": body, "axis": [1, 0, 0]}});
+    let spring = |a: &str, b: &str, at: Value, stiffness: f64| json!({"spring": {"between": [a, b], "at": at, "rest_length": 1, "stiffness": stiffness}});
+    json!({
+        "version": 1, "name": "carts", "analysis": "rest",
+        "bodies": {"one": cart(1.0, masses[0]), "two": cart(2.0, masses[1])},
+        "joints": {"first": rail("one"), "second": rail("two")},
+        "loads": {
+            "left": spring("one", "ground", json!({"a": [0, 0, 0], "b": [0, 0, 0]}), stiffness[0]),
+            "middle": spring("two", "one", json!({"a": [0, 0, 0], "b": [0, 0, 0]}), stiffness[1]),
+            "right": spring("two", "ground", json!({"a": [0, 0, 0], "b": [3, 0, 0]}), stiffness[2])
+        },
+        "functions": frequencies(2)
+    })
+}
+
+#[test]
+fn two_carts_have_the_frequencies_of_their_springs() {
+    let ([a, b, c], [m, n]) = ([300.0, 170.0, 90.0], [2.0, 0.7]);
+    let found = values(&carts([a, b, c], [m, n]));
+    let mut swapped = carts([a, b, c], [m, n]);
+    swapped["joints"]["first"]["prismatic"]["between"] = json!(["ground", "one"]);
+    assert_near(&values(&swapped), &found, 1e-12);
+    let (half, product) = (
+        ((a + b) / m + (b + c) / n) / 2.0,
+        ((a + b) * (b + c) - b * b) / (m * n),
+    );
+    let root = (half * half - product).sqrt();
+    let expected = [half - root, half + root].map(|x: f64| x.sqrt() / (2.0 * PI));
+    assert_near(&found, &expected, 1e-12);
+}
+
+/// A cantilever with a mass at its tip, of r times its own: 1 + cos β cosh β = r β (sin β cosh β − cos β sinh β), ω = β² √(EI / m L³).
+fn cantilever(ratio: f64) -> Value {
+    let section = json!({"rectangle": {"width": 0.02, "height": 0.01}});
+    let beam = json!({
+        "beam": {"length": 1, "section": section,
+                 "material": {"young": 7e10, "density": 2700, "poisson": 0.3},
+                 "modes": {"bending_y": 6, "bending_z": 6, "torsion": 2, "stretch": 2}},
+        "place": {"put": "start"}
+    });
+    json!({
+        "version": 1, "name": "cantilever", "analysis": "rest", "gravity": [0, 0, 0],
+        "bodies": {
+            "beam": beam,
+            "tip": {"shape": "point", "mass": ratio * 2700.0 * 0.02 * 0.01, "place": {"at": "beam.end"}}
+        },
+        "joints": {
+            "wall": {"weld": {"between": ["beam", "ground"], "at": "beam.start"}},
+            "seat": {"spherical": {"between": ["tip", "beam"], "at": "beam.end"}}
+        },
+        "functions": frequencies(2),
+        "variables": {
+            "young": {"path": "/bodies/beam/beam/material/young", "lower": 1e10, "upper": 1e11},
+            "height": {"path": "/bodies/beam/beam/section/rectangle/height", "lower": 0.005, "upper": 0.018},
+            "tip": {"path": "/bodies/tip/mass", "lower": 0.01, "upper": 10}
+        }
+    })
+}
+
+#[test]
+fn a_cantilever_with_a_mass_at_its_tip() {
+    for ratio in [0.2, 1.0, 5.0] {
+        let found = values(&cantilever(ratio));
+        let off = |b: f64| {
+            1.0 + b.cos() * b.cosh() - ratio * b * (b.sin() * b.cosh() - b.cos() * b.sinh())
+        };
+        let (mut low, mut high) = (0.1, 1.8751041);
+        while high - low > 1e-14 {
+            let middle = 0.5 * (low + high);
+            if off(middle) > 0.0 {
+                low = middle
+            } else {
+                high = middle
+            }
+        }
+        // Both directions of bending, of inertia height³ width / 12 and width³ height / 12.
+        let (ei, mass) = (7e10 * 0.02_f64 * 0.01_f64 / 12.0, 2700.0 * 0.02 * 0.01);
+        let one = |h: f64| low * low * (ei * h * h / mass).sqrt() / (2.0 * PI);
+        assert_near(&found, &[one(0.01), one(0.02)], 1e-3);
+        gradients_are_exact(&parsed(&cantilever(ratio)), &json!(ratio));
+    }
+}
+
+/// A plate that is welded at an edge vibrates as the same mesh with a support.
+#[test]
+fn a_welded_plate_vibrates_as_a_supported_one() {
+    let structure = json!({
+        "mesh": {"plate": {"length": 1, "width": 0.5, "elements": [4, 2]}},
+        "material": "aluminium", "thickness": 0.01
+    });
+    let materials = json!({"aluminium": {"young": 7e10, "poisson": 0.3, "density": 2700}});
+    let moving = json!({
+        "version": 1, "name": "plate", "analysis": "rest", "gravity": [0, 0, 0], "materials": materials,
+        "bodies": {"plate": {"elements": {
+            "structure": structure, "frame": {"clamped": "x0"}, "points": {"root": {"rigid": "x0"}}
+        }}},
+        "joints": {"wall": {"weld": {"between": ["plate", "ground"], "at": "plate.root"}}},
+        "functions": frequencies(4)
+    });
+    let mut still = json!({
+        "version": 1, "name": "plate", "materials": materials, "structures": {"plate": structure},
+        "functions": frequencies(4)
+    });
+    still["structures"]["plate"]["supports"] = json!({"root": {"nodes": "x0"}});
+    let problem = parsed(&still);
+    let at = Simulated::of(&problem, &problem.start()).expect("frequencies");
+    let expected: Vec<f64> = (0..4).map(|f| at.value(f)).collect();
+    assert_near(&values(&moving), &expected, 1e-9);
+}
+
+/// The same machine in another order, turned, in another unit of mass. (A cross whose bodies change places is another
+/// machine: its axes are those of other bodies.)
+#[test]
+fn equal_machines_vibrate_alike() {
+    let of = |mut file: Value| {
+        file["functions"] = frequencies(4);
+        values(&file)
+    };
+    let expected = of(machine(false, false, 0.0, 1.0));
+    for other in [
+        machine(true, false, 0.0, 1.0),
+        machine(true, false, 0.8, 1.0),
+        machine(false, false, -2.0, 1e3),
+        machine(false, false, 0.0, 1e-4),
+    ] {
+        assert_near(&of(other), &expected, 1e-7);
+    }
+}
+
+/// Derivatives go through the rest, which moves with the design: against differences.
+#[test]
+fn derivatives_follow_the_rest() {
+    let mut file = machine(false, false, 0.3, 1.0);
+    file["functions"] = json!({
+        "f1": {"frequency": {"mode": 1}}, "f3": {"frequency": {"mode": 3}},
+        "lowest": {"lowest_frequency": {"rho": 5}}
+    });
+    file["variables"] = json!({
+        "stiffness": {"path": "/loads/middle/spring/stiffness", "lower": 10, "upper": 100},
+        "length": {"path": "/loads/near/spring/rest_length", "lower": 0.1, "upper": 1},
+        "mass": {"path": "/bodies/first/mass", "lower": 1, "upper": 5},
+        "gravity": {"path": "/gravity/1", "lower": -20, "upper": -1}
+    });
+    file["gravity"] = json!([0, -9.81, 0]);
+    let problem = parsed(&file);
+    gradients_are_exact(&problem, &json!("machine"));
+    let x = problem.start();
+    let at = |x: &[f64]| Simulated::of(&problem, x).expect("a rest");
+    for derivative in check(&problem, &x).expect("derivatives") {
+        let (f, i) = (derivative.function, derivative.variable);
+        let step = 1e-4 * x[i].abs();
+        let moved = |by: f64| {
+            let mut x = x.clone();
+            x[i] += by;
+            at(&x).value(f)
+        };
+        let difference = (8.0 * (moved(step) - moved(-step)) - moved(2.0 * step)
+            + moved(-2.0 * step))
+            / (12.0 * step);
+        let off = (derivative.adjoint - difference).abs() * x[i].abs();
+        assert!(off < 1e-7 * at(&x).value(f), "{derivative:?} {difference}");
+    }
+}
+
+/// Where two frequencies meet, each has no derivative, and their aggregate has one.
+#[test]
+fn an_aggregate_has_derivatives_where_frequencies_meet() {
+    let mut file = carts([200.0, 0.0, 200.0], [1.0, 1.0]);
+    file["functions"] = json!({"lowest": {"lowest_frequency": {"rho": 3}}});
+    file["variables"] = json!({
+        "left": {"path": "/loads/left/spring/stiffness", "lower": 100, "upper": 300},
+        "mass": {"path": "/bodies/two/mass", "lower": 0.5, "upper": 2}
+    });
+    let problem = parsed(&file);
+    let f = 200.0_f64.sqrt() / (2.0 * PI);
+    let at = Simulated::of(&problem, &problem.start()).expect("a rest");
+    assert!((at.value(0) - (f - 2.0_f64.ln() / 3.0)).abs() < 1e-12);
+    assert!((at.smoothed(0).expect("an aggregate").value - f).abs() < 1e-12);
+    let found = check(&problem, &problem.start()).expect("derivatives");
+    assert!(
+        (found[0].adjoint - f / (4.0 * 200.0)).abs() < 1e-12,
+        "{found:?}"
+    );
+    assert!((found[1].adjoint + f / 4.0).abs() < 1e-12, "{found:?}");
+    file["functions"] = json!({"first": {"frequency": {"mode": 1}}});
+    let problem = parsed(&file);
+    assert!((values(&file)[0] - f).abs() < 1e-12);
+    let failed = check(&problem, &problem.start());
+    assert!(failed.map_or(true, |all| all.iter().any(|own| !own.adjoint.is_finite())));
+}
+
+/// Seven equal pendulums beside each other have one frequency seven times.
+#[test]
+fn all_copies_of_a_frequency_are_found() {
+    let (mut bodies, mut joints) = (serde_json::Map::new(), serde_json::Map::new());
+    for k in 0..7 {
+        let name = format!("l{k}");
+        let place = json!({"put": "a", "at": [2 * k, 0, 0]});
+        bodies.insert(name.clone(), rod(1.0, 2.0, place));
+        let at = json!(format!("{name}.a"));
+        joints.insert(format!("j{k}"), hinge([&name, "ground"], at));
+    }
+    let mut file = json!({
+        "version": 1, "name": "row", "analysis": "rest", "bodies": bodies, "joints": joints,
+        "functions": {"lowest": {"lowest_frequency": {"rho": 10}}, "last": {"frequency": {"mode": 7}}}
+    });
+    let found = values(&file);
+    let expected = found[1] - 7.0_f64.ln() / 10.0;
+    assert!((found[0] - expected).abs() < 1e-9, "{found:?} {expected}");
+    file["functions"] = frequencies(8);
+    let text = fault(&file);
+    assert!(
+        text.contains("mode 8 is asked for, and there are 7"),
+        "{text}"
+    );
+}
+
+/// What has no such frequencies.
+#[test]
+fn what_has_no_frequencies_is_told() {
+    // A bar that stands upright.
+    let upright = json!({"put": "a", "turn": {"axis": [0, 0, 1], "angle": PI / 2.0}});
+    let bar = |place: Value| {
+        json!({
+            "version": 1, "name": "bar", "analysis": "rest",
+            "bodies": {"bar": rod(1.0, 2.0, place)},
+            "joints": {"pin": hinge(["bar", "ground"], json!([0, 0, 0]))},
+            "functions": frequencies(1)
+        })
+    };
+    let text = fault(&bar(upright));
+    assert!(
+        text.contains("not stable") && text.contains("/functions"),
+        "{text}"
+    );
+    let mut many = bar(json!({"put": "a"}));
+    many["functions"] = frequencies(2);
+    let text = fault(&many);
+    assert!(
+        text.contains("mode 2 is asked for, and there are 1"),
+        "{text}"
+    );
+    // Nothing moves.
+    let mut fixed = bar(json!({"put": "a"}));
+    fixed["joints"]["pin"] = json!({"weld": {"between": ["bar", "ground"], "at": "bar.a"}});
+    fixed["functions"] = json!({"f": {"lowest_frequency": {"rho": 1}}});
+    let text = fault(&fixed);
+    assert!(
+        text.contains("mode 1 is asked for, and there are 0"),
+        "{text}"
+    );
+    let mut moving = bar(json!({"put": "a"}));
+    moving
+        .as_object_mut()
+        .expect("an object")
+        .remove("analysis");
+    moving["simulation"] = json!({"duration": 1});
+    let text = fault(&moving);
+    assert!(
+        text.contains("a natural frequency of a machine in motion"),
+        "{text}"
+    );
+    // Beck's column in rods: a force along the last of two.
+    let mut follower = chain(2, 1.0, 1.0);
+    follower["loads"] = json!({"push": {"force": {
+        "body": "l1", "point": "b", "direction": [1, 0, 0], "axes": "body", "magnitude": 3
+    }}});
+    let text = fault(&follower);
+    assert!(text.contains("no potential"), "{text}");
+}
