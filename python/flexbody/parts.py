@@ -45,6 +45,7 @@ __all__ = [
     "Structure",
     "Mesh",
     "Member",
+    "LengthUnit",
     "Thickness",
     "VariedThickness",
     "Per",
@@ -67,7 +68,6 @@ __all__ = [
     "ModalFrame",
     "ModalDamping",
     "Surface",
-    "LengthUnit",
     "BodyPoint",
     "Between",
     "Place",
@@ -631,6 +631,9 @@ BendingFunctions: TypeAlias = Literal["polynomial", "sine"]
 BeamStrain: TypeAlias = Literal["von_karman", "linear"]
 """Strain of the line of centres."""
 
+LengthUnit: TypeAlias = Literal["m", "cm", "mm", "inch"]
+"""A unit of length."""
+
 Thickness: TypeAlias = Union[Real, VariedThickness]
 """Thickness of shells."""
 
@@ -648,9 +651,6 @@ ElementInertia: TypeAlias = Literal["full", "paper"]
 
 InterfaceNodes: TypeAlias = Union[Integer, Vector]
 """Nodes of an interface."""
-
-LengthUnit: TypeAlias = Literal["m", "cm", "mm", "inch"]
-"""A unit of length."""
 
 BodyPoint: TypeAlias = Union[Vector, Between]
 """A named point of a body."""
@@ -2039,6 +2039,26 @@ class meshes(Kinds):
         """
         return made(Mesh, "meshes.frame", locals())
 
+    @staticmethod
+    @checked
+    def gmsh(*, file: str, unit: LengthUnit | None = None, orientation: Vector | None = None) -> Mesh:
+        """A mesh from a file of Gmsh.
+
+        Parameters
+        ----------
+        file : text
+            The file; its path is relative to the problem file.
+        unit : "m" or "cm" or "mm" or "inch", optional
+            Unit of its coordinates, default m.
+            "m": Metres.
+            "cm": Centimetres.
+            "mm": Millimetres.
+            "inch": Inches.
+        orientation : numbers, shape (3,), optional
+            Of beams: a vector in the plane of each and axis 2 of its section.
+        """
+        return made(Mesh, "meshes.gmsh", locals())
+
 
 class structure_sections(Kinds):
     """A cross section by its sizes, or by given stiffnesses `G`. In structures axis 2 lies in the plane of beam and
@@ -2236,7 +2256,7 @@ class held_places(Kinds):
     @staticmethod
     @checked
     def edge(value: str, /) -> HeldPlace:
-        """A straight edge, as `rigid` if a weld holds it, else as `mean`.
+        """An edge, as `rigid` if a weld holds it, else as `mean`.
 
         Parameters
         ----------
@@ -2247,7 +2267,7 @@ class held_places(Kinds):
     @staticmethod
     @checked
     def rigid(value: str, /) -> HeldPlace:
-        """A straight edge all of whose nodes follow: it moves as a rigid body.
+        """An edge all of whose nodes follow: it moves as a rigid body.
 
         Parameters
         ----------
@@ -2258,7 +2278,7 @@ class held_places(Kinds):
     @staticmethod
     @checked
     def mean(value: str, /) -> HeldPlace:
-        """A straight edge whose average follows: its mean place, and the rotation of its line.
+        """An edge whose average follows: its mean place, and the rotation that fits its displacements best.
 
         Parameters
         ----------
