@@ -224,7 +224,7 @@ def test_a_mesh_of_gmsh() -> None:
     )  # fmt: skip
     pull = machine.add_load_case("pull", {"pin": case_loads.edge(edges="bore", force=[1000, 0, 0])})
     machine.add_function("moves", functions.displacement(case=pull, nodes="bore", direction=[1, 0, 0]))
-    machine.add_variable("thickness", "/structures/bracket/thickness", lower=0.001, upper=0.01)
+    machine.add_variable("thickness", path="/structures/bracket/thickness", lower=0.001, upper=0.01)
     problem = machine.problem(directory=PROBLEMS)
     assert 0 < problem.values()[0] < 1e-3
 
@@ -234,7 +234,7 @@ def test_frequencies_about_rest() -> None:
     rod = machine.add_body("rod", shape=shapes.rod(length=1), mass=2, points={"pin": [-0.5, 0, 0]}, place=place(put="pin"))
     machine.add_joint("pin", joints.revolute(between=[rod, "ground"], at=[0, 0, 0], axis=[0, 0, 1]))
     machine.add_function("frequency", functions.frequency(mode=1))
-    machine.add_variable("gravity", "/gravity/1", lower=-20, upper=-1)
+    machine.add_variable("gravity", path="/gravity/1", lower=-20, upper=-1)
     problem = machine.problem()
     frequency = problem.values()[0]
     assert frequency == pytest.approx(math.sqrt(1.5 * 9.81) / (2 * math.pi), rel=1e-3)
