@@ -357,7 +357,9 @@ impl Evaluated {
             let rows = by_parameters.iter().zip(&sizes);
             for (gradient, (by, sizes)) in all.iter_mut().zip(rows) {
                 let mut sum = Derivative::default();
-                for ((a, size), b) in by.iter().zip(sizes).zip(&moved) {
+                // A parameter without a derivative concerns the functions that depend on it alone.
+                let terms = by.iter().zip(sizes).zip(&moved);
+                for ((a, size), b) in terms.filter(|((a, size), _)| **a != 0.0 || **size != 0.0) {
                     sum.value += a * b;
                     sum.terms += (size * b).abs();
                 }

@@ -276,11 +276,55 @@ fn an_aggregate_has_derivatives_where_frequencies_meet() {
         "{found:?}"
     );
     assert!((found[1].adjoint + f / 4.0).abs() < 1e-12, "{found:?}");
-    file["functions"] = json!({"first": {"frequency": {"mode": 1}}});
+    // The other function keeps its derivatives.
+    file["functions"]["first"] = json!({"frequency": {"mode": 1}});
     let problem = parsed(&file);
-    assert!((values(&file)[0] - f).abs() < 1e-12);
-    let failed = check(&problem, &problem.start());
-    assert!(failed.map_or(true, |all| all.iter().any(|own| !own.adjoint.is_finite())));
+    let names = &problem.function_names;
+    let of = |name: &str| {
+        names
+            .iter()
+            .position(|own| own == name)
+            .expect("a function")
+    };
+    assert!((values(&file)[of("first")] - f).abs() < 1e-12);
+    for own in check(&problem, &problem.start()).expect("derivatives") {
+        assert_eq!(
+            own.adjoint.is_finite(),
+            own.function == of("lowest"),
+            "{own:?}"
+        );
+    }
+}
+
+/// A machine whose bodies can move in as many ways as modes are asked for, or fewer than the search would take; some of
+/// them free.
+#[test]
+fn machines_of_few_motions_have_their_modes_alone() {
+    let body = |at: Value| {
+        let turn = json!({"axis": [1, 2, 3], "angle": 0.7});
+        rod(1.0, 2.0, json!({"put": "a", "at": at, "turn": turn}))
+    };
+    let file = json!({
+        "version": 1, "name": "few", "analysis": "rest",
+        "bodies": {"one": body(json!([0, 0, 0])), "two": body(json!("one.b")), "three": body(json!("two.b"))},
+        "joints": {
+            "ball": {"spherical": {"between": ["one", "ground"], "at": "one.a"}},
+            "cross": {"universal": {"between": ["two", "one"], "at": "two.a",
+                                    "axis": [1, 0, 0], "cross": [0, 1, 0]}},
+            "seat": {"weld": {"between": ["three", "two"], "at": "three.a"}}
+        },
+        "functions": {"f": {"frequency": {"mode": 4}}, "lowest": {"lowest_frequency": {"rho": 3}}}
+    });
+    // Five motions, of which the turn about the vertical is free; swings in two planes by two frequencies each.
+    let found = values(&file);
+    assert!(found.iter().all(|f| f.is_finite() && *f > 0.0), "{found:?}");
+    let mut more = file.clone();
+    more["functions"]["f"]["frequency"]["mode"] = json!(5);
+    let text = fault(&more);
+    assert!(
+        text.contains("mode 5 is asked for, and there are 4"),
+        "{text}"
+    );
 }
 
 /// Seven equal pendulums beside each other have one frequency seven times.

@@ -43,6 +43,7 @@ use equations::{Layout, State};
 use matrix::Factors;
 use modes::{Mode, vibrations};
 pub use modes::{Vibration, WantedModes};
+use rest::FreeMotion;
 pub use rest::{Stability, stability};
 pub use stability::growth;
 use std::sync::{Arc, Mutex};
@@ -87,6 +88,7 @@ struct Known {
     states: Vec<(Vec<f64>, State<f64>)>,
     factors: Option<(Vec<f64>, Factors)>,
     modes: Option<(Vec<f64>, Vec<Mode>)>,
+    free: Option<(Vec<f64>, Vec<FreeMotion>)>,
 }
 
 impl KnownStarts {
@@ -125,6 +127,18 @@ impl KnownStarts {
         let mut known = self.0.lock().ok()?;
         let kept = known.factors.take_if(|(own, _)| own == numbers);
         kept.map(|(_, factors)| factors)
+    }
+
+    fn free(&self, numbers: &[f64]) -> Option<Vec<FreeMotion>> {
+        let known = self.0.lock().ok()?;
+        let (own, free) = known.free.as_ref()?;
+        (own == numbers).then(|| free.clone())
+    }
+
+    fn keep_free(&self, numbers: &[f64], free: &[FreeMotion]) {
+        if let Ok(mut known) = self.0.lock() {
+            known.free = Some((numbers.to_vec(), free.to_vec()));
+        }
     }
 
     fn keep_factors(&self, numbers: Vec<f64>, factors: Factors) {

@@ -32,8 +32,6 @@ const ASYMMETRIC: f64 = 1e-7;
 const REPEATED: f64 = 1e-6;
 const SAME: f64 = 1e-9;
 
-/// Inverse iterations of a free motion.
-const INVERSE: usize = 4;
 /// Most modes of an aggregate, its first number of them, and the largest ρ (f − f_1) of one that counts.
 const MOST: usize = 160;
 const FIRST: usize = 6;
@@ -175,9 +173,17 @@ impl Solver<'_> {
             free.orthogonalise(&mut y);
             free.push(&softened, y, 0.0);
         }
+        // Beyond the motions that the joints allow there is round-off alone.
+        let rows = self.layout.numbering.constraints() - self.layout.left_out.numbers().count();
+        let allowed = (softened.order().saturating_sub(rows)).saturating_sub(free.len());
         let mut count = wanted.least();
         loop {
-            let (space, all) = softened.largest(&free, count + SPARE);
+            let (mut space, mut all) = match allowed {
+                0 => (Vec::new(), true),
+                _ => softened.largest(&free, (count + SPARE).min(allowed)),
+            };
+            all |= space.len() >= allowed;
+            space.truncate(allowed);
             let there = space.len();
             if there < if all { wanted.count.max(1) } else { count } {
                 return none(match all {
@@ -200,24 +206,6 @@ impl Solver<'_> {
             }
             count = (2 * count).min(MOST);
         }
-    }
-
-    /// A free motion without its parts along others, which inverse iteration makes smaller by σ / (λ + σ) each time.
-    fn purified(
-        &self,
-        factors: &mut Factors,
-        motions: &[BodyMotion<f64>],
-        mut y: Vec<f64>,
-    ) -> Vec<f64> {
-        for _ in 0..INVERSE {
-            let mut next = self.metric_product(motions, &y);
-            next.resize(self.layout.order(), 0.0);
-            factors.solve(&mut next);
-            next.truncate(y.len());
-            let size = dot(&next, &next).sqrt();
-            y = next.into_iter().map(|x| x / size).collect();
-        }
-        y
     }
 
     /// The modes in the space of some motions.

@@ -21,8 +21,13 @@ pub(super) const FLOOR: f64 = 1e-6;
 const FREE: f64 = 1e-10;
 /// A body takes part in a free motion if it moves by this part of the largest.
 const MOVES: f64 = 0.05;
+/// Inverse iterations of a free motion.
+const INVERSE: usize = 4;
 /// Largest part of the right side that the derivative of a solution leaves.
 const UNSOLVED: f64 = 1e-6;
+
+/// A free motion of unit length in the metric, and its product with that.
+pub(super) type FreeMotion = [Vec<f64>; 2];
 
 /// Whether rest is stable.
 #[derive(Clone, Debug, Default, PartialEq)]
@@ -87,7 +92,7 @@ impl Solver<'_> {
         factors: &mut Factors,
         found: &State<f64>,
         right: &[f64],
-        change: Vec<f64>,
+        mut change: Vec<f64>,
     ) -> Result<Vec<f64>, AssemblyFailure> {
         let along = self.layout.along(self.model, self.given, found);
         let mut rest = along.product(&change);
@@ -104,6 +109,7 @@ impl Solver<'_> {
                 .max(of_reactions * largest)
         });
         if sizes[0] <= UNSOLVED * sizes[1] {
+            self.without_free(factors, found, &mut change)?;
             return Ok(change);
         }
         self.not_held(factors, found)?;
@@ -144,6 +150,57 @@ impl Solver<'_> {
             }
         }
         Ok(out)
+    }
+
+    /// A free motion without its parts along others, which inverse iteration makes smaller by σ / (λ + σ) each time.
+    pub(super) fn purified(
+        &self,
+        factors: &mut Factors,
+        motions: &[BodyMotion<f64>],
+        mut y: Vec<f64>,
+    ) -> Vec<f64> {
+        for _ in 0..INVERSE {
+            let mut next = self.metric_product(motions, &y);
+            next.resize(self.layout.order(), 0.0);
+            factors.solve(&mut next);
+            next.truncate(y.len());
+            let size = dot(&next, &next).sqrt();
+            y = next.into_iter().map(|x| x / size).collect();
+        }
+        y
+    }
+
+    /// Removes the parts of a change along free motions, which stay as placed: round-off by the least σ alone.
+    fn without_free(
+        &self,
+        factors: &mut Factors,
+        found: &State<f64>,
+        change: &mut [f64],
+    ) -> Result<(), AssemblyFailure> {
+        let n = self.layout.numbering.unknowns();
+        let motions = self.layout.at_rest(&found.q);
+        let free = match self.known.free(&self.numbers) {
+            Some(known) => known,
+            None => {
+                let mut free: Vec<FreeMotion> = Vec::new();
+                for (stiffness, y) in self.soft_motions(factors, found)? {
+                    if !self.is_free(stiffness, found) {
+                        continue;
+                    }
+                    let mut y = self.purified(factors, &motions, y);
+                    free.iter().for_each(|own| remove(own, &mut y));
+                    let heavy = self.metric_product(&motions, &y);
+                    let size = dot(&y, &heavy).sqrt();
+                    if size > 0.0 {
+                        free.push([y, heavy].map(|x| x.into_iter().map(|x| x / size).collect()));
+                    }
+                }
+                self.known.keep_free(&self.numbers, &free);
+                free
+            }
+        };
+        free.iter().for_each(|own| remove(own, &mut change[..n]));
+        Ok(())
     }
 
     /// Whether a motion with this stiffness \[1/s²\] is free.
@@ -215,4 +272,10 @@ impl Solver<'_> {
             }
         }
     }
+}
+
+/// Removes the part of a vector along a free motion.
+fn remove([y, with_metric]: &FreeMotion, from: &mut [f64]) {
+    let along = dot(with_metric, from);
+    add_scaled(from, -along, y);
 }
