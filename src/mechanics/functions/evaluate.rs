@@ -16,6 +16,7 @@ use crate::linalg::SolveScalar;
 use crate::math::soft_max::{Bound, SoftMax};
 use crate::math::{Complex64, Parameters};
 use crate::model::Model;
+use crate::structures::modes::soft_lowest;
 
 /// Below this sharpness the samples resolve a peak.
 const COARSE: f64 = 0.3;
@@ -155,12 +156,6 @@ impl Function<Complex64> {
             }
         }
     }
-}
-
-/// The soft maximum of −f_k.
-pub(super) fn soft_lowest<S: SolveScalar>(frequencies: &[S], rho: f64) -> SoftMax<S> {
-    let negative: Vec<S> = frequencies.iter().map(|&f| -f).collect();
-    SoftMax::new(&negative, |_| S::one(), rho)
 }
 
 /// The reduction over a window; NaN if the window is not inside the motion, or empty.

@@ -1,6 +1,6 @@
 //! Functions linearised about a run, for the adjoint.
 
-use super::evaluate::{mean_flight, release_weights, soft_lowest, turning, without_negligible};
+use super::evaluate::{mean_flight, release_weights, turning, without_negligible};
 use super::function::{Function, Reduction, Release};
 use super::instant::{Instant, Projectile};
 use super::measure::pull_flight;
@@ -16,6 +16,7 @@ use crate::integrate::Trajectory;
 use crate::math::Parameters;
 use crate::math::soft_max::{Bound, SoftMax};
 use crate::model::Model;
+use crate::structures::modes::soft_lowest;
 
 /// One instant quantity with a weight at every instant.
 struct Weighted {

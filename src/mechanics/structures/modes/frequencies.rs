@@ -5,6 +5,7 @@
 //! basis of their space with the weights ∂J/∂λ_k.
 
 use super::{ModalFailure, ModalProblem, Modes};
+use crate::linalg::SolveScalar;
 use crate::math::Scalar;
 use crate::math::soft_max::SoftMax;
 use crate::structures::assembly::add_energy_transpose;
@@ -14,11 +15,11 @@ use crate::structures::state::NodalMotion;
 use crate::structures::structure::Structure;
 
 /// Largest e^{−ρ(f − f_1)} of the first mode that is left out.
-const NEGLIGIBLE: f64 = 38.0;
+pub const NEGLIGIBLE: f64 = 38.0;
 /// Largest number of modes of an aggregate.
-const MOST_MODES: usize = 160;
+pub const MOST_MODES: usize = 160;
 /// Relative distance below which an eigenvalue counts as repeated.
-const REPEATED: f64 = 1e-6;
+pub const REPEATED: f64 = 1e-6;
 
 /// The aggregate of the lowest frequencies, its modes and its gradient.
 #[derive(Clone, Debug)]
@@ -134,8 +135,13 @@ pub fn reduced<S: Scalar>(
 
 /// −(1/ρ) ln Σ e^{−ρ f_k} of these frequencies \[Hz\], with ρ \[s\].
 pub fn lowest_of(frequencies: &[f64], rho: f64) -> f64 {
-    let negative: Vec<f64> = frequencies.iter().map(|f| -f).collect();
-    -SoftMax::new(&negative, |_| 1.0, rho).ks
+    -soft_lowest(frequencies, rho).ks
+}
+
+/// The soft maximum of −f_k, with ρ \[s\].
+pub fn soft_lowest<S: SolveScalar>(frequencies: &[S], rho: f64) -> SoftMax<S> {
+    let negative: Vec<S> = frequencies.iter().map(|&f| -f).collect();
+    SoftMax::new(&negative, |_| S::one(), rho)
 }
 
 /// −(1/ρ) ln Σ e^{−ρ f_k} over the elastic modes, with ρ \[s\] (Kreisselmeier & Steinhauser 1979). As many
@@ -166,8 +172,7 @@ pub fn lowest_frequency(
         let next = (f.len() as f64 * (1.2 * NEGLIGIBLE / reach.max(1e-3))).ceil();
         count = (next.min(2.0 * f.len() as f64 + 4.0) as usize).clamp(f.len() + 1, MOST_MODES);
     };
-    let negative: Vec<f64> = modes.frequencies().iter().map(|f| -f).collect();
-    let soft = SoftMax::new(&negative, |_| 1.0, rho);
+    let soft = soft_lowest(&modes.frequencies(), rho);
     let slopes = modes
         .eigenvalues
         .iter()

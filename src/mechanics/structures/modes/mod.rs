@@ -10,12 +10,13 @@ mod rigid;
 mod search;
 
 pub use frequencies::{
-    LowestFrequency, eigenvalue_gradient, frequency_gradient, lowest_frequency, reduced,
+    LowestFrequency, MOST_MODES, NEGLIGIBLE, REPEATED, eigenvalue_gradient, frequency_gradient,
+    lowest_frequency, reduced, soft_lowest,
 };
 
 pub use frequencies::lowest_of;
 pub use lanczos::{Basis, Operator, largest};
-pub use search::{Pencil, PencilFailure};
+pub use search::{Pencil, PencilFailure, dense_pencil};
 
 use super::assembly::Assembly;
 use super::shell::Terms;

@@ -52,6 +52,22 @@ impl Shifted<'_> {
     }
 }
 
+/// Eigenvalues of K z = λ M z in rising order, and their vectors with zᵀ M z = 1; `None` if M is not positive.
+pub fn dense_pencil(
+    stiffness: &DMatrix<f64>,
+    mass: DMatrix<f64>,
+) -> Option<(Vec<f64>, DMatrix<f64>)> {
+    let lower = Cholesky::new(mass)?.l();
+    let half = lower.solve_lower_triangular(stiffness)?;
+    let reduced = lower.solve_lower_triangular(&half.transpose())?;
+    let eigen = SymmetricEigen::new((&reduced + reduced.transpose()) * 0.5);
+    let mut order: Vec<usize> = (0..eigen.eigenvalues.len()).collect();
+    order.sort_by(|&a, &b| eigen.eigenvalues[a].total_cmp(&eigen.eigenvalues[b]));
+    let vectors = eigen.eigenvectors.select_columns(&order);
+    let parts = lower.transpose().solve_upper_triangular(&vectors)?;
+    Some((order.iter().map(|&k| eigen.eigenvalues[k]).collect(), parts))
+}
+
 /// Why a pair of matrices has no such modes.
 #[derive(Clone, Debug, PartialEq)]
 pub enum PencilFailure {
@@ -293,19 +309,8 @@ impl Pencil {
         if count == 0 {
             return Err(failure);
         }
-        let lower = Cholesky::new(m).ok_or(failure.clone())?.l();
-        let first = lower.solve_lower_triangular(&k).ok_or(failure.clone())?;
-        let second = lower
-            .solve_lower_triangular(&first.transpose())
-            .ok_or(failure.clone())?;
-        let eigen = SymmetricEigen::new((&second + second.transpose()) * 0.5);
-        let mix = lower
-            .transpose()
-            .solve_upper_triangular(&eigen.eigenvectors)
-            .ok_or(failure)?;
-        let mut order: Vec<usize> = (0..count).collect();
-        order.sort_by(|&a, &b| eigen.eigenvalues[a].total_cmp(&eigen.eigenvalues[b]));
-        for &i in &order {
+        let (values, mix) = dense_pencil(&k, m).ok_or(failure)?;
+        for i in 0..count {
             let combine = |list: &[Vec<f64>]| {
                 let mut sum = vec![0.0; n];
                 for (j, v) in list.iter().enumerate() {
@@ -317,7 +322,7 @@ impl Pencil {
             locked.vectors.push(combine(&y));
             locked.products.push(combine(&by_m));
         }
-        Ok(order.iter().map(|&i| eigen.eigenvalues[i]).collect())
+        Ok(values)
     }
 
     /// How many eigenvalues, rigid motions among them, lie below a gap. Leaves the factors of K + s M.

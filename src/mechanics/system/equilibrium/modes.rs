@@ -19,23 +19,22 @@ use super::{KnownStarts, Solver};
 use crate::math::Scalar;
 use crate::math::slices::{add_scaled, dot};
 use crate::model::Model;
-use crate::structures::modes::{Basis, Operator, largest};
+use crate::structures::modes::{
+    Basis, MOST_MODES, NEGLIGIBLE, Operator, REPEATED, dense_pencil, largest,
+};
 use crate::system::bodies::BodyMotion;
 use crate::system::failure::AssemblyFailure;
-use nalgebra::{DMatrix, SymmetricEigen};
+use nalgebra::DMatrix;
 
 /// Modes beyond the requested ones, whose space improves these.
 const SPARE: usize = 3;
 /// Part of the stiffness that may be asymmetric by round-off.
 const ASYMMETRIC: f64 = 1e-7;
-/// Relative distance of ω² below which two modes count as one; and of eigenvalues that are equal.
-const REPEATED: f64 = 1e-6;
+/// Relative distance of eigenvalues that are equal.
 const SAME: f64 = 1e-9;
 
-/// Most modes of an aggregate, its first number of them, and the largest ρ (f − f_1) of one that counts.
-const MOST: usize = 160;
+/// First number of modes of an aggregate.
 const FIRST: usize = 6;
-const NEGLIGIBLE: f64 = 38.0;
 
 /// The modes that functions need.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
@@ -164,12 +163,11 @@ impl Solver<'_> {
             motions: &motions,
             factors,
         };
+        if self.stability(softened.factors, found)?.growth.is_some() {
+            return none("it is not stable".into());
+        }
         let mut free = Basis::default();
-        for (stiffness, y) in self.soft_motions(softened.factors, found)? {
-            if stiffness < 0.0 && !self.is_free(stiffness, found) {
-                return none("it is not stable".into());
-            }
-            let mut y = self.purified(softened.factors, &motions, y);
+        for [mut y, _] in self.free_motions(softened.factors, found)? {
             free.orthogonalise(&mut y);
             free.push(&softened, y, 0.0);
         }
@@ -199,12 +197,12 @@ impl Solver<'_> {
             if all || wanted.suffice(&modes) {
                 return Ok(modes);
             }
-            if count >= MOST {
+            if count >= MOST_MODES {
                 return none(format!(
-                    "more than {MOST} modes are within reach of ρ; a larger one needs fewer"
+                    "more than {MOST_MODES} modes are within reach of ρ; a larger one needs fewer"
                 ));
             }
-            count = (2 * count).min(MOST);
+            count = (2 * count).min(MOST_MODES);
         }
     }
 
@@ -241,7 +239,7 @@ impl Solver<'_> {
             let why = "a load that turns with its body has no potential".into();
             return Err(AssemblyFailure::NoModes { why });
         }
-        let (squares, parts) = pencil(&stiffness, mass).ok_or(AssemblyFailure::Singular)?;
+        let (squares, parts) = dense_pencil(&stiffness, mass).ok_or(AssemblyFailure::Singular)?;
         let near = |a: usize, b: usize| match (squares.get(a), squares.get(b)) {
             (Some(a), Some(b)) => (b - a).abs() <= REPEATED * b.abs(),
             _ => false,
@@ -259,19 +257,6 @@ impl Solver<'_> {
         };
         Ok(squares.iter().enumerate().map(one).collect())
     }
-}
-
-/// Eigenvalues of K z = λ M z in rising order, and their vectors with zᵀ M z = 1; `None` if M is not positive.
-fn pencil(stiffness: &DMatrix<f64>, mass: DMatrix<f64>) -> Option<(Vec<f64>, DMatrix<f64>)> {
-    let lower = mass.cholesky()?.l();
-    let half = lower.solve_lower_triangular(stiffness)?;
-    let reduced = lower.solve_lower_triangular(&half.transpose())?;
-    let eigen = SymmetricEigen::new((&reduced + reduced.transpose()) * 0.5);
-    let mut order: Vec<usize> = (0..eigen.eigenvalues.len()).collect();
-    order.sort_by(|&a, &b| eigen.eigenvalues[a].total_cmp(&eigen.eigenvalues[b]));
-    let vectors = eigen.eigenvectors.select_columns(&order);
-    let parts = lower.transpose().solve_upper_triangular(&vectors)?;
-    Some((order.iter().map(|&k| eigen.eigenvalues[k]).collect(), parts))
 }
 
 /// A vibration about rest.

@@ -109,7 +109,11 @@ impl Solver<'_> {
                 .max(of_reactions * largest)
         });
         if sizes[0] <= UNSOLVED * sizes[1] {
-            self.without_free(factors, found, &mut change)?;
+            // Free motions stay as placed: along them the least σ alone leaves round-off.
+            let n = self.layout.numbering.unknowns();
+            for own in self.free_motions(factors, found)? {
+                remove(&own, &mut change[..n]);
+            }
             return Ok(change);
         }
         self.not_held(factors, found)?;
@@ -132,7 +136,7 @@ impl Solver<'_> {
     }
 
     /// The stability of a solution, with its factors.
-    fn stability(
+    pub(super) fn stability(
         &self,
         factors: &mut Factors,
         found: &State<f64>,
@@ -153,7 +157,7 @@ impl Solver<'_> {
     }
 
     /// A free motion without its parts along others, which inverse iteration makes smaller by σ / (λ + σ) each time.
-    pub(super) fn purified(
+    fn purified(
         &self,
         factors: &mut Factors,
         motions: &[BodyMotion<f64>],
@@ -170,46 +174,35 @@ impl Solver<'_> {
         y
     }
 
-    /// Removes the parts of a change along free motions, which stay as placed: round-off by the least σ alone.
-    fn without_free(
+    /// The free motions at a solution, orthogonal in the metric, with its factors. They become known.
+    pub(super) fn free_motions(
         &self,
         factors: &mut Factors,
         found: &State<f64>,
-        change: &mut [f64],
-    ) -> Result<(), AssemblyFailure> {
-        let n = self.layout.numbering.unknowns();
+    ) -> Result<Vec<FreeMotion>, AssemblyFailure> {
+        if let Some(known) = self.known.free(&self.numbers) {
+            return Ok(known);
+        }
         let motions = self.layout.at_rest(&found.q);
-        let free = match self.known.free(&self.numbers) {
-            Some(known) => known,
-            None => {
-                let mut free: Vec<FreeMotion> = Vec::new();
-                for (stiffness, y) in self.soft_motions(factors, found)? {
-                    if !self.is_free(stiffness, found) {
-                        continue;
-                    }
-                    let mut y = self.purified(factors, &motions, y);
-                    free.iter().for_each(|own| remove(own, &mut y));
-                    let heavy = self.metric_product(&motions, &y);
-                    let size = dot(&y, &heavy).sqrt();
-                    if size > 0.0 {
-                        free.push([y, heavy].map(|x| x.into_iter().map(|x| x / size).collect()));
-                    }
-                }
-                self.known.keep_free(&self.numbers, &free);
-                free
+        let mut free: Vec<FreeMotion> = Vec::new();
+        for (stiffness, y) in self.soft_motions(factors, found)? {
+            if stiffness.abs() > FREE * found.rate {
+                continue;
             }
-        };
-        free.iter().for_each(|own| remove(own, &mut change[..n]));
-        Ok(())
-    }
-
-    /// Whether a motion with this stiffness \[1/s²\] is free.
-    pub(super) fn is_free(&self, stiffness: f64, found: &State<f64>) -> bool {
-        stiffness.abs() <= FREE * found.rate
+            let mut y = self.purified(factors, &motions, y);
+            free.iter().for_each(|own| remove(own, &mut y));
+            let heavy = self.metric_product(&motions, &y);
+            let size = dot(&y, &heavy).sqrt();
+            if size > 0.0 {
+                free.push([y, heavy].map(|x| x.into_iter().map(|x| x / size).collect()));
+            }
+        }
+        self.known.keep_free(&self.numbers, &free);
+        Ok(free)
     }
 
     /// Motions y with K y = λ M̃ y on G y = 0 and their λ, those with λ below the least σ, with the factors of a solution.
-    pub(super) fn soft_motions(
+    fn soft_motions(
         &self,
         factors: &mut Factors,
         found: &State<f64>,
