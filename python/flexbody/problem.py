@@ -293,6 +293,24 @@ class Problem:
         return self._core.name
 
     @property
+    def cases(self) -> tuple[str, ...]:
+        """Names of its cases; empty if it has none."""
+        return tuple(self._core.cases)
+
+    def case(self, name: str) -> Problem:
+        """The problem of one case: the machine with its values, its functions without "in CASE", no objective.
+
+        Motions, rests and modes are those of a case: `problem.case("full").simulate()`.
+
+        Raises
+        ------
+        KeyError
+            There is no case of this name.
+        """
+        _index(name, self.cases, "case")
+        return type(self)(self._core.case(name), self._directory)
+
+    @property
     def objective(self) -> Objective | None:
         """The function that is optimised, if the file states one."""
         found = self._core.objective

@@ -7,7 +7,7 @@ use crate::optimum::{Optimum, Wanted, optimise};
 use crate::run::{Stop, run};
 use flexbody::{Analysis, Design, Override, Sense, SimulationError};
 use numpy::PyReadonlyArray1;
-use pyo3::exceptions::PyValueError;
+use pyo3::exceptions::{PyKeyError, PyValueError};
 use pyo3::prelude::*;
 use std::path::PathBuf;
 use std::sync::{Arc, Mutex, PoisonError};
@@ -265,6 +265,20 @@ impl Problem {
         names
             .map(|(f, name)| (name.clone(), self.problem.function_unit(f)))
             .collect()
+    }
+
+    /// Names of its cases.
+    #[getter]
+    fn cases(&self) -> Vec<String> {
+        let names = self.problem.case_names().into_iter();
+        names.map(str::to_owned).collect()
+    }
+
+    /// The problem of a case, by its name.
+    fn case(&self, name: &str) -> PyResult<Self> {
+        let own = self.problem.case(name);
+        let own = own.ok_or_else(|| PyKeyError::new_err(name.to_owned()))?;
+        Ok(Self::new(own.clone(), self.file.clone()))
     }
 
     /// Index of the function, and whether it is maximised.

@@ -309,3 +309,26 @@ def test_a_page_shows_the_motion(pendulum: flexbody.Problem, tmp_path: Path) -> 
     page.save(tmp_path / "page.html")
     assert (tmp_path / "page.html").read_text() == page.html and page.html.startswith("<!")
     assert "<iframe srcdoc=" in page._repr_html_()
+
+
+def test_cases_are_problems_of_their_own() -> None:
+    document = copy.deepcopy(PENDULUM)
+    document["cases"] = {"short": {}, "long": {"set": {"/simulation/duration": 2 * document["simulation"]["duration"]}}}
+    name = next(iter(document["functions"]))
+    document["functions"]["mean"] = {"over_cases": {"function": name, "by": "mean"}}
+    for key in ("objective", "constraints"):
+        document.pop(key, None)
+    problem = flexbody.Problem.from_dict(document)
+    assert problem.cases == ("short", "long")
+    assert {f"{name} in short", f"{name} in long", "mean"} <= set(problem.functions.names)
+    values = problem.evaluate()
+    assert np.isclose(values["mean"], (values[f"{name} in short"] + values[f"{name} in long"]) / 2, rtol=1e-15)
+    short, long = problem.case("short"), problem.case("long")
+    assert short.cases == () and short.functions.names[0] == name
+    assert values[f"{name} in long"] == long.evaluate()[name]
+    assert long.simulate().duration == 2 * short.simulate().duration
+    assert problem.check().passed
+    with pytest.raises(KeyError, match="did you mean 'long'"):
+        problem.case("lon")
+    with pytest.raises(flexbody.SimulationError, match="cases"):
+        problem.simulate()

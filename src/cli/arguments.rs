@@ -119,6 +119,9 @@ pub(crate) struct Job {
     /// is smaller; see `optimize explain`. Default: half of the available memory.
     #[arg(long, value_name = "SIZE", value_parser = bytes, hide_short_help = true)]
     pub memory: Option<usize>,
+    /// Takes one case of the file alone, without objective: to simulate, check, explain or measure it.
+    #[arg(long, value_name = "NAME", hide_short_help = true)]
+    pub case: Option<String>,
     /// Integrates the scene as written, without reductions.
     #[arg(long, hide_short_help = true)]
     pub no_lowering: bool,

@@ -28,11 +28,17 @@ pub(crate) fn compare(files: &Comparison) -> Result<u8, Failure> {
 /// Draws the figures of a result directory from its record.
 pub(crate) fn plot(directory: &Path) -> Result<u8, Failure> {
     from_record(directory, |_, recorded, history| {
-        Ok(figures::of_ends(
-            &recorded.problem,
-            &recorded.ends(),
-            history,
-        ))
+        let ends = recorded.ends();
+        let named = |(name, bytes): figures::NamedFile| (PathBuf::from(name), bytes);
+        let mut all: Vec<(PathBuf, Vec<u8>)> = figures::of_ends(&recorded.problem, &ends, history)
+            .into_iter()
+            .map(named)
+            .collect();
+        for (case, ends) in &ends.cases {
+            let own = figures::of_designs(&case.problem, ends).into_iter();
+            all.extend(own.map(|(name, bytes)| (Path::new(&case.name).join(name), bytes)));
+        }
+        Ok(all)
     })
 }
 
@@ -47,14 +53,14 @@ pub(crate) fn report(directory: &Path) -> Result<u8, Failure> {
             (of_run, made(&command())),
         );
         let page = page.map_err(Failure::numerical)?;
-        Ok(vec![(REPORT, page.into_bytes())])
+        Ok(vec![(REPORT.into(), page.into_bytes())])
     })
 }
 
 /// Writes files beside a record, made from it.
 fn from_record(
     directory: &Path,
-    make: impl Fn(&Optimum, &Recorded, &History) -> Result<Vec<figures::NamedFile>, Failure>,
+    make: impl Fn(&Optimum, &Recorded, &History) -> Result<Vec<(PathBuf, Vec<u8>)>, Failure>,
 ) -> Result<u8, Failure> {
     // The record itself stands for its directory.
     let directory = match (directory.is_file(), directory.parent()) {
@@ -67,6 +73,10 @@ fn from_record(
     let state = state_in(directory);
     let _held = prepare_directory(directory)?;
     let recorded = Recorded::of(&optimum, state.as_ref(), directory).map_err(Failure::bad_input)?;
+    let mut of_cases = Vec::new();
+    for case in recorded.problem.case_names() {
+        of_cases.push(prepare_directory(&directory.join(case))?);
+    }
     let files = make(&optimum, &recorded, &history)?.into_iter();
     let files: Vec<(PathBuf, Vec<u8>)> = files
         .map(|(name, bytes)| (directory.join(name), bytes))

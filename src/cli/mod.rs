@@ -2,12 +2,14 @@
 
 mod aggregates;
 mod arguments;
+mod cases;
 mod compare;
 mod earlier;
 mod error_table;
 mod explain;
 mod installation;
 mod interrupt;
+mod motion;
 mod new;
 mod one_start;
 mod optimise;
@@ -308,21 +310,52 @@ fn read_with(job: &Job, overrides: &[Override]) -> Result<Problem, Failure> {
             }),
         }
     })?;
+    if let Some(name) = &job.case {
+        problem = one_case(&problem, name, &job.problem)?;
+    }
     if job.vtu && problem.statics.is_none() && !problem.has_shells() {
         return Err(Failure::bad_input(format!(
             "{}: found --vtu, expected a problem of structures or a body with \"elements\"",
             shown(&job.problem)
         )));
     }
-    if job.no_lowering {
-        problem.lowering = None;
-    }
-    problem.simulation.memory = job.memory;
-    problem.simulation.limits.progress = Some(progress::progress());
+    let progress = progress::progress();
+    problem.change_all(&|own| {
+        if job.no_lowering {
+            own.lowering = None;
+        }
+        own.simulation.memory = job.memory;
+        own.simulation.limits.progress = Some(progress.clone());
+    });
     if !job.quiet {
         progress::watch();
     }
     Ok(problem)
+}
+
+/// The problem of a case.
+fn one_case(problem: &Problem, name: &str, file: &Path) -> Result<Problem, Failure> {
+    problem.case(name).cloned().ok_or_else(|| {
+        let names = problem.case_names();
+        let expected = match names.is_empty() {
+            true => "none: the file has no \"cases\"".to_owned(),
+            false => format!("one of {}", names.join(", ")),
+        };
+        let file = shown(file);
+        Failure::bad_input(format!("{file}: found --case {name}, expected {expected}"))
+    })
+}
+
+/// Refuses a problem of several cases, of which a command takes one.
+fn refuse_cases(problem: &Problem, file: &Path, command: &str) -> Result<(), Failure> {
+    match problem.case_names().as_slice() {
+        [] => Ok(()),
+        names => Err(Failure::bad_input(format!(
+            "{}: found several cases, expected --case NAME: {command} takes one of {}",
+            shown(file),
+            names.join(", ")
+        ))),
+    }
 }
 
 /// Refuses --report where no page is written.
@@ -347,6 +380,7 @@ fn refine(job: &Job, problem: Problem) -> Result<Problem, Failure> {
             shown(&job.problem)
         )));
     }
+    refuse_cases(&problem, &job.problem, "--accuracy")?;
     let Some(objective) = problem.stated_objective() else {
         return Err(Failure::bad_input(format!(
             "{}: found --accuracy, expected a problem with an objective; set /simulation/tolerance \

@@ -168,7 +168,8 @@ pub(crate) fn optimise(job: &Job, course: &RunOptions) -> Result<u8, Failure> {
         (Some(driver::Simulated::Motion(end)), true) => {
             write_all(&figures::shell_fields::series(&directory, &problem, end))?;
         }
-        (_, false) | (None, true) => {}
+        // `optimize simulate --from` writes those of cases.
+        (Some(driver::Simulated::Cases(_)) | None, _) | (_, false) => {}
     }
     if let Some(error) = unwritten {
         return Err(error.into());
@@ -181,7 +182,7 @@ pub(crate) fn optimise(job: &Job, course: &RunOptions) -> Result<u8, Failure> {
     }
     checked?;
     if let (true, Some(end)) = (job.error, &done.end) {
-        print(&super::simulate::errors(&problem, end)?)?;
+        print(&super::motion::errors(&problem, end)?)?;
     }
     if stopped() {
         return Ok(INTERRUPTED);

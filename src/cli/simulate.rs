@@ -1,23 +1,16 @@
 //! `optimize simulate` and `optimize check`.
 
-use super::aggregates::{add_smoothed, told};
 use super::arguments::Job;
 use super::earlier::start_from;
-use super::error_table::{self, table};
+use super::motion::{all, as_json, errors_of_motion, summary, write_files};
 use super::{
-    DONE, Failure, NOT_REACHED, draw, load, no_page, print, read, refine, shown, tell, write_report,
+    DONE, Failure, NOT_REACHED, load, no_page, print, read, refine, shown, tell, write_report,
 };
 use crate::driver::ends::Ends;
-use crate::driver::unfollowed::unfollowed;
-use crate::driver::{self, CheckedDerivative, Evaluated, Simulated, Simulation, error, not_finite};
+use crate::driver::{self, CheckedDerivative, not_finite};
 use crate::figures::tables::ReactionAxes;
-use crate::figures::{self, tables};
-use crate::functions::evaluate::ungated_maximum;
-use crate::functions::peak::Maximum;
-use crate::integrate::IntegrationFailure;
-use crate::problem::Problem;
-use crate::report::{prepare_directory, with_space, write_all};
-use serde_json::{Map, Value, json};
+use crate::library;
+use crate::report::prepare_directory;
 use std::fmt::Write;
 use std::path::Path;
 
@@ -39,6 +32,13 @@ pub(crate) fn simulate(
     };
     expect_directory(job)?;
     let problem = refine(job, problem)?;
+    let axes = match joint_axes {
+        true => ReactionAxes::Joint,
+        false => ReactionAxes::Ground,
+    };
+    if problem.cases.is_some() {
+        return super::cases::simulate(job, &problem, json, axes);
+    }
     if problem.statics.is_some() {
         return super::statics::simulate(job, &problem, json);
     }
@@ -50,36 +50,19 @@ pub(crate) fn simulate(
     };
     let simulation = simulation.map_err(Failure::numerical)?;
     if json {
-        print(&as_json(&problem, &simulation, job.error)?)?;
+        let all = as_json(&problem, &simulation, job.error)?;
+        let text = serde_json::to_string_pretty(&all).map_err(Failure::numerical)?;
+        print(&(text + "\n"))?;
     } else {
         if !job.quiet {
             print(&summary(&problem, &simulation))?;
         }
         if job.error {
-            let found = error::estimate(&problem, &simulation.at, &all(&problem), true);
-            let text = table(&problem, &found.map_err(Failure::numerical)?);
-            let bases = of_bases(&problem, &simulation.at);
-            print(&(text + &bases + &warned(&problem, &simulation.at)))?;
+            print(&errors_of_motion(&problem, &simulation)?)?;
         }
     }
     if let Some(directory) = &job.output {
-        let axes = match joint_axes {
-            true => ReactionAxes::Joint,
-            false => ReactionAxes::Ground,
-        };
-        let tables: Vec<_> = tables::of_simulation(&problem, &simulation, axes)
-            .into_iter()
-            .map(|(name, bytes)| (directory.join(name), bytes))
-            .collect();
-        write_all(&tables)?;
-        if job.vtu {
-            write_all(&figures::shell_fields::series(
-                directory,
-                &problem,
-                &simulation,
-            ))?;
-        }
-        draw(directory, figures::of_simulation(&problem, &simulation));
+        write_files(job, directory, (&problem, &simulation), axes)?;
         if job.report {
             let (text, ends) = (summary(&problem, &simulation), Ends::of_motion(&simulation));
             write_report(directory, &problem, text, &ends, None)?;
@@ -124,250 +107,6 @@ pub(super) fn expect_directory(job: &Job) -> Result<(), Failure> {
     })
 }
 
-/// The result of a simulation in full precision.
-fn as_json(
-    problem: &Problem,
-    simulation: &Simulation,
-    with_errors: bool,
-) -> Result<String, Failure> {
-    let (run, counts) = (&simulation.at.run, simulation.at.run.counts);
-    let names = &problem.function_names;
-    let mut functions = Map::new();
-    let mut bases = None;
-    let unknown = with_errors
-        .then(|| unfollowed(problem, &simulation.at))
-        .flatten();
-    for (f, name) in names.iter().enumerate() {
-        let found = simulation.at.function(f);
-        let mut own = json!({"value": found.value, "unit": problem.function_unit(f)});
-        if let Some(Maximum { value, time, error }) = found.maximum {
-            own["true_maximum"] = json!({"value": value, "time": time, "error": error});
-        }
-        if let Some(smoothed) = simulation.at.smoothed(f) {
-            add_smoothed(&mut own, &smoothed, found.maximum.is_some());
-        }
-        functions.insert(name.clone(), own);
-    }
-    if with_errors {
-        let all: Vec<usize> = (0..names.len()).collect();
-        let found = error::estimate(problem, &simulation.at, &all, true);
-        for found in found.map_err(Failure::numerical)? {
-            let own = &mut functions[&names[found.function]];
-            own["error"] = json!(found.value.error);
-            if unknown.is_some() {
-                own["error_known"] = json!(false);
-            }
-            let gradient = problem.variables.iter().zip(&found.gradient);
-            let gradient = gradient.map(|(variable, derivative)| {
-                let both = json!({"value": derivative.value, "error": derivative.error});
-                (variable.name.clone(), both)
-            });
-            own["gradient"] = Value::Object(gradient.collect());
-        }
-        let found = driver::bases::errors(problem, &simulation.at, &all);
-        bases = found.as_ref().err().map(of_finer);
-        for found in found.into_iter().flatten() {
-            let own = &mut functions[&names[found.function]];
-            own["basis_error"] = json!(found.error());
-            if let Some([value, other]) = found.maximum {
-                own["true_maximum"]["basis_error"] = json!((value - other).abs());
-            }
-        }
-    }
-    let mut warnings: Vec<String> = simulation.warning.iter().cloned().collect();
-    warnings.extend(simulation.at.doubts(problem, 0..names.len()));
-    warnings.extend(unknown.into_iter().chain(bases));
-    let first = &simulation.observations[0];
-    let conserved = simulation.at.scene.model.conserves_energy();
-    let (position, velocity) = simulation.constraint_drift();
-    if simulation.at.is_rest() {
-        let all = json!({
-            "name": problem.name,
-            "analysis": "rest",
-            "functions": functions,
-            "energy": first.kinetic + first.potential,
-            "left": {"acceleration": simulation.unbalanced(), "gaps": position},
-            "notes": driver::start::notes(problem, &simulation.at.x),
-            "warnings": warnings,
-        });
-        return Ok(serde_json::to_string_pretty(&all).map_err(Failure::numerical)? + "\n");
-    }
-    let mut all = json!({
-        "name": problem.name,
-        "duration": run.duration,
-        "method": run.method.name(),
-        "reason": simulation.reason,
-        "work": {
-            "steps": run.grid.steps(),
-            "evaluations": counts.evaluations,
-            "newton_iterations": counts.newton_iterations,
-            "factorisations": counts.factorisations,
-        },
-        "functions": functions,
-        "energy": {
-            "start": first.kinetic + first.potential,
-            "largest_change": simulation.energy_drift(),
-            "conserved": conserved,
-            "meaning": match conserved {
-                true => "no drive, load or damping does work; largest_change is the error of the run",
-                false => "drives, loads or damping do work; largest_change contains it",
-            },
-        },
-        "constraint_drift": {"position": position, "velocity": velocity},
-        "start": driver::start::notes(problem, &simulation.at.x),
-        "warnings": warnings,
-    });
-    if counts.products > 0 {
-        all["work"]["krylov_products"] = json!(counts.products);
-    }
-    let text = serde_json::to_string_pretty(&all).map_err(Failure::numerical)?;
-    Ok(text + "\n")
-}
-
-fn summary(problem: &Problem, simulation: &Simulation) -> String {
-    let run = &simulation.at.run;
-    let counts = run.counts;
-    let products = match counts.products {
-        0 => String::new(),
-        products => format!(", {products} Krylov products"),
-    };
-    let is_rest = simulation.at.is_rest();
-    let mut text = match is_rest {
-        true => format!("{}: at rest\n", problem.name),
-        false => format!(
-            "{}: {} s by {} in {} steps ({} evaluations, {} Newton iterations, {} factorisations{products})\n  \
-         method: {}\n",
-            problem.name,
-            (run.duration * 1e9).round() / 1e9,
-            run.method.name(),
-            run.grid.steps(),
-            counts.evaluations,
-            counts.newton_iterations,
-            counts.factorisations,
-            simulation.reason
-        ),
-    };
-    if let Some(warning) = &simulation.warning {
-        let _ = writeln!(text, "  warning: {warning}");
-    }
-    if let Some(note) = simulation.many_steps(problem) {
-        let _ = writeln!(text, "  note: {note}");
-    }
-    for note in driver::start::notes(problem, &simulation.at.x) {
-        let what = if is_rest { "note" } else { "start" };
-        let _ = writeln!(text, "  {what}: {note}");
-    }
-    if simulation.unlowered {
-        text.push_str("  integrated as written: this design does not admit the lowering\n");
-    } else if let Some(merged) = driver::merged_errs(problem, &simulation.at) {
-        let _ = writeln!(text, "  {merged}");
-    }
-    for warning in simulation
-        .at
-        .doubts(problem, 0..problem.function_names.len())
-    {
-        let _ = writeln!(text, "  warning: {warning}");
-    }
-    let width = problem
-        .function_names
-        .iter()
-        .map(|n| n.chars().count())
-        .max()
-        .unwrap_or(0);
-    for (f, name) in problem.function_names.iter().enumerate() {
-        let found = simulation.at.function(f);
-        let unit = with_space(Some(&problem.function_unit(f)));
-        let _ = write!(text, "  {name:width$}  {:>16.9e}{unit}", found.value);
-        if let Some(Maximum { value, time, error }) = found.maximum {
-            let _ = match is_rest {
-                true => write!(text, "  true maximum {value:.9e}{unit} (± {error:.0e}"),
-                false => write!(
-                    text,
-                    "  true maximum {value:.9e}{unit} at t = {time:.6} s (± {error:.0e}"
-                ),
-            };
-            let at = &simulation.at;
-            match ungated_maximum(&at.scene.functions[f], &at.scene.model, &at.run) {
-                Some(free) => {
-                    let _ = write!(text, "; with the gate's factor, without it {free:.9e})");
-                }
-                None => text.push(')'),
-            }
-        }
-        text += &told(simulation.at.smoothed(f), found.maximum.is_some());
-        text.push('\n');
-    }
-    let (first, last) = (&simulation.observations[0], simulation.observations.last());
-    let energy = first.kinetic + first.potential;
-    let (position, velocity) = simulation.constraint_drift();
-    if is_rest {
-        let _ = writeln!(
-            text,
-            "  energy {energy:.6e} J; left: acceleration {:.1e} m/s^2, gaps of joints {position:.1e} m",
-            simulation.unbalanced()
-        );
-        return text;
-    }
-    let _ = writeln!(
-        text,
-        "  energy {energy:.6e} J, {} {:.2e} J; constraints: position {position:.1e}, \
-         velocity {velocity:.1e}",
-        match simulation.at.scene.model.conserves_energy() {
-            true => "drift",
-            false => "by loads and drives up to",
-        },
-        simulation.energy_drift()
-    );
-    if let Some(last) = last {
-        let _ = writeln!(
-            text,
-            "  momentum at the end {:.6e} kg m/s, angular momentum {:.6e} kg m^2/s",
-            last.momentum.norm(),
-            last.angular_momentum.norm()
-        );
-    }
-    text
-}
-
-fn all(problem: &Problem) -> Vec<usize> {
-    (0..problem.function_names.len()).collect()
-}
-
-/// A table of the estimated discretisation errors of all functions and their gradients.
-pub(crate) fn errors(problem: &Problem, at: &Simulated) -> Result<String, Failure> {
-    let found = at.estimate(problem, &all(problem), true);
-    let text = table(problem, &found.map_err(Failure::numerical)?);
-    Ok(match at {
-        Simulated::Motion(simulation) => {
-            text + &of_bases(problem, &simulation.at) + &warned(problem, &simulation.at)
-        }
-        Simulated::Statics(_) => text,
-    })
-}
-
-/// A table of the errors of bases, if there are any.
-fn of_bases(problem: &Problem, at: &Evaluated) -> String {
-    match driver::bases::errors(problem, at, &all(problem)) {
-        Ok(found) => error_table::of_bases(problem, &found),
-        Err(failure) => format!("not known: {}\n", of_finer(&failure)),
-    }
-}
-
-/// Why the errors of bases are not known.
-fn of_finer(failure: &IntegrationFailure) -> String {
-    format!(
-        "errors of bases are not known: the run with all nodes and more functions of beams fails: {failure}"
-    )
-}
-
-/// A warning of a motion that magnifies round-off.
-fn warned(problem: &Problem, at: &Evaluated) -> String {
-    let chaos = driver::chaos::of_motion(problem, at, &all(problem));
-    let chaos = chaos.map(|chaos| format!("warning: {chaos}\n"));
-    let unknown = unfollowed(problem, at).map(|why| format!("not known: {why}\n"));
-    unknown.into_iter().chain(chaos).collect()
-}
-
 /// Checks all gradients of a problem at its start.
 pub(crate) fn check(job: &Job, from: Option<&Path>, tolerance: f64) -> Result<u8, Failure> {
     if job.output.is_some() {
@@ -388,9 +127,9 @@ pub(crate) fn check(job: &Job, from: Option<&Path>, tolerance: f64) -> Result<u8
             shown(&job.problem)
         )));
     }
-    let chaos = match problem.statics {
-        Some(_) => None,
-        None => driver::chaos(&problem, &problem.start()),
+    let chaos = match problem.has_scene() {
+        false => None,
+        true => driver::chaos(&problem, &problem.start()),
     };
     let derivatives = match (driver::check(&problem, &problem.start()), &chaos) {
         (Ok(derivatives), _) => derivatives,
@@ -398,11 +137,8 @@ pub(crate) fn check(job: &Job, from: Option<&Path>, tolerance: f64) -> Result<u8
         (Err(_), Some(chaos)) => return Err(Failure::numerical(chaos)),
         (Err(failure), None) => return Err(Failure::numerical(failure)),
     };
-    let unresolved = match problem.statics {
-        Some(_) => Vec::new(),
-        // Where the finer run fails, the two derivatives still agree or not.
-        None => driver::resolved::of_design(&problem, &problem.start()).unwrap_or_default(),
-    };
+    // Where the finer run fails, the two derivatives still agree or not.
+    let unresolved = library::unresolved(&problem, &problem.start());
     let names = |all: &mut dyn Iterator<Item = &String>| {
         all.map(|name| name.chars().count())
             .max()
@@ -437,7 +173,7 @@ pub(crate) fn check(job: &Job, from: Option<&Path>, tolerance: f64) -> Result<u8
             "  differs by round-off of larger terms".to_string()
         } else if passed {
             String::new()
-        } else if problem.statics.is_some() {
+        } else if !problem.has_scene() {
             "  exceeds the tolerance".to_string()
         } else {
             format!(
@@ -465,7 +201,7 @@ pub(crate) fn check(job: &Job, from: Option<&Path>, tolerance: f64) -> Result<u8
         .filter(|d| !d.is_round_off())
         .map(CheckedDerivative::noise)
         .fold(0.0, f64::max);
-    if problem.statics.is_none() {
+    if problem.has_scene() {
         let _ = writeln!(
             text,
             "where Newton's method stops moves the derivatives by up to {noise:.1e}"
@@ -474,12 +210,11 @@ pub(crate) fn check(job: &Job, from: Option<&Path>, tolerance: f64) -> Result<u8
     if let Some(chaos) = &chaos {
         let _ = writeln!(text, "warning: {chaos}");
     }
-    for own in &unresolved {
-        let _ = writeln!(text, "refused: {}", own.describe(&problem));
-    }
-    if !unresolved.is_empty() {
-        let advice = driver::resolved::advice(&problem);
-        let _ = writeln!(text, "the steps do not resolve these derivatives: {advice}");
+    if let Some((advice, refused)) = unresolved.split_last() {
+        for own in refused {
+            let _ = writeln!(text, "refused: {own}");
+        }
+        let _ = writeln!(text, "{advice}");
     }
     let failed = failed > 0 || !unresolved.is_empty();
     if !job.quiet || failed {

@@ -6,6 +6,7 @@ use super::error_table::table;
 use super::{DONE, Failure, draw, print, shown, tell, write_report};
 use crate::driver::analysed::place;
 use crate::driver::ends::Ends;
+use crate::driver::error::FunctionError;
 use crate::driver::statics::{StaticDesign, error, precision};
 use crate::figures::plots;
 use crate::figures::statics::{fields, figures};
@@ -36,46 +37,7 @@ pub(crate) fn simulate(job: &Job, problem: &Problem, json: bool) -> Result<u8, F
         false => None,
     };
     if json {
-        let mut functions = Map::new();
-        for (f, name) in problem.function_names.iter().enumerate() {
-            let found = design.function(f);
-            let mut own = json!({"value": found.value, "unit": problem.function_unit(f)});
-            if let Some(peak) = found.peak {
-                let place = place(&design.statics.cases, &peak);
-                own["true_maximum"] = json!({"value": peak.ratio, "place": place});
-            }
-            if let Some(smoothed) = design.smoothed(f) {
-                add_smoothed(&mut own, &smoothed, found.peak.is_some());
-            }
-            if let Some(errors) = &errors {
-                own["error"] = json!(errors[f].value.error);
-                let gradient = problem.variables.iter().zip(&errors[f].gradient);
-                let gradient = gradient.map(|(variable, derivative)| {
-                    let both = json!({"value": derivative.value, "error": derivative.error});
-                    (variable.name.clone(), both)
-                });
-                own["gradient"] = Value::Object(gradient.collect());
-            }
-            functions.insert(name.clone(), own);
-        }
-        let doubt = errors
-            .is_some()
-            .then(|| error::doubts(problem, &design, &all(problem)));
-        let mut all = json!({
-            "name": problem.name,
-            "mesh": size(&design),
-            "work": {
-                "factorisations": design.counts.factorisations,
-                "solves": design.counts.solves,
-            },
-            "functions": functions,
-        });
-        if let Some(doubt) = doubt.flatten() {
-            all["warning"] = json!(doubt);
-        }
-        if let Some(warning) = design.large_rotation() {
-            all["warnings"] = json!([warning]);
-        }
+        let all = as_json(problem, &design, errors.as_deref());
         let text = serde_json::to_string_pretty(&all).map_err(Failure::numerical)?;
         print(&(text + "\n"))?;
     } else {
@@ -90,11 +52,7 @@ pub(crate) fn simulate(job: &Job, problem: &Problem, json: bool) -> Result<u8, F
         }
     }
     if let Some(directory) = &job.output {
-        if job.vtu {
-            let fields = fields::fields(&design).into_bytes();
-            write_all(&[(directory.join("fields.vtu"), fields)])?;
-        }
-        draw(directory, figures::figures(problem, &[("", &design)], None));
+        write_files(job, directory, problem, &design)?;
         if job.report {
             let (text, ends) = (summary(problem, &design), Ends::of_structure(&design));
             write_report(directory, problem, text, &ends, None)?;
@@ -117,6 +75,70 @@ pub(crate) fn simulate(job: &Job, problem: &Problem, json: bool) -> Result<u8, F
     Ok(DONE)
 }
 
+/// The files of solved structures.
+pub(super) fn write_files(
+    job: &Job,
+    directory: &Path,
+    problem: &Problem,
+    design: &StaticDesign,
+) -> Result<(), Failure> {
+    if job.vtu {
+        let fields = fields::fields(design).into_bytes();
+        write_all(&[(directory.join("fields.vtu"), fields)])?;
+    }
+    draw(directory, figures::figures(problem, &[("", design)], None));
+    Ok(())
+}
+
+/// Solved structures in full precision.
+pub(super) fn as_json(
+    problem: &Problem,
+    design: &StaticDesign,
+    errors: Option<&[FunctionError]>,
+) -> Value {
+    let mut functions = Map::new();
+    for (f, name) in problem.function_names.iter().enumerate() {
+        let found = design.function(f);
+        let mut own = json!({"value": found.value, "unit": problem.function_unit(f)});
+        if let Some(peak) = found.peak {
+            let place = place(&design.statics.cases, &peak);
+            own["true_maximum"] = json!({"value": peak.ratio, "place": place});
+        }
+        if let Some(smoothed) = design.smoothed(f) {
+            add_smoothed(&mut own, &smoothed, found.peak.is_some());
+        }
+        if let Some(errors) = errors {
+            own["error"] = json!(errors[f].value.error);
+            let gradient = problem.variables.iter().zip(&errors[f].gradient);
+            let gradient = gradient.map(|(variable, derivative)| {
+                let both = json!({"value": derivative.value, "error": derivative.error});
+                (variable.name.clone(), both)
+            });
+            own["gradient"] = Value::Object(gradient.collect());
+        }
+        functions.insert(name.clone(), own);
+    }
+    let doubt = errors
+        .is_some()
+        .then(|| error::doubts(problem, design, &all(problem)));
+    let mut found = json!({
+        "name": problem.name,
+        "mesh": size(design),
+        "work": {
+            "factorisations": design.counts.factorisations,
+            "solves": design.counts.solves,
+        },
+        "functions": functions,
+    });
+    if let Some(doubt) = doubt.flatten() {
+        found["warning"] = json!(doubt);
+    }
+    if let Some(warning) = design.large_rotation() {
+        found["warnings"] = json!([warning]);
+    }
+    found
+}
+
 fn size(design: &StaticDesign) -> Value {
     let mesh = design.statics.mesh();
     json!({
@@ -135,7 +157,7 @@ fn counts(design: &StaticDesign) -> String {
     format!("{shells} shells, {beams} beams, {nodes} nodes, {unknowns} unknowns")
 }
 
-fn summary(problem: &Problem, design: &StaticDesign) -> String {
+pub(super) fn summary(problem: &Problem, design: &StaticDesign) -> String {
     let mut text = format!(
         "{}: {}; {} load cases ({} factorisations, {} solves)\n",
         problem.name,
@@ -164,8 +186,8 @@ fn summary(problem: &Problem, design: &StaticDesign) -> String {
     text
 }
 
-/// Says what structures have, and what functions depend on.
-pub(crate) fn explain(problem: &Problem, json: bool) -> Result<u8, Failure> {
+/// What structures have, and what functions depend on.
+pub(crate) fn explained(problem: &Problem, json: bool) -> Result<String, Failure> {
     let design = start(problem)?;
     let (gradients, _) = design
         .derivatives(problem, &all(problem))
@@ -204,8 +226,7 @@ pub(crate) fn explain(problem: &Problem, json: bool) -> Result<u8, Failure> {
             "idle_variables": idle,
         });
         let text = serde_json::to_string_pretty(&all).map_err(Failure::numerical)?;
-        print(&(text + "\n"))?;
-        return Ok(DONE);
+        return Ok(text + "\n");
     }
     let mut text = format!(
         "{}: structures that do not move\n  mesh: {}\n",
@@ -249,8 +270,7 @@ pub(crate) fn explain(problem: &Problem, json: bool) -> Result<u8, Failure> {
             idle.join(", ")
         );
     }
-    print(&text)?;
-    Ok(DONE)
+    Ok(text)
 }
 
 /// Measures error against time and mesh.

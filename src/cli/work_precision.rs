@@ -1,7 +1,7 @@
 //! `optimize work-precision`.
 
 use super::arguments::{Job, Measurement};
-use super::{DONE, Failure, draw, no_page, print, read, refine, shown, tell};
+use super::{DONE, Failure, draw, no_page, print, read, refine, refuse_cases, shown, tell};
 use crate::driver::work_precision::{Campaign, work_precision};
 use crate::figures::plots;
 use crate::problem::Problem;
@@ -18,6 +18,7 @@ pub(crate) fn measure(asked: &Measurement) -> Result<u8, Failure> {
     }
     no_page(job, "optimize work-precision")?;
     let problem = read(job)?;
+    refuse_cases(&problem, &job.problem, "work-precision")?;
     if problem.statics.is_some() {
         return super::statics::measure(job, &problem, asked.function.as_deref(), asked.runs);
     }

@@ -1,5 +1,6 @@
 //! Functions of interest in a file.
 
+use super::cases::OverCases;
 pub use super::instants::{
     Absolute, Component, CountedFrom, ElasticDisplacement, Energy, FibreStress, Gate, Instant,
     JointAngle, Momentum, Moving, OfBeam, Range, Rotation, SectionForce, ShellStress, Spinning,
@@ -65,6 +66,8 @@ pub enum Function {
     Frequency(Frequency),
     /// Smooth lower bound of the natural frequencies \[Hz\].
     LowestFrequency(LowestFrequency),
+    /// Sum, mean, deviation or extreme of the values of a function in several cases.
+    OverCases(OverCases),
     /// An expression of other functions and of parameters, such as `2*mass + work/duration`. Names that are no words
     /// stand between single quotes or backquotes.
     Expression(String),
@@ -142,6 +145,7 @@ impl Function {
             | Self::Reaction(_)
             | Self::ReactionMoment(_)
             | Self::VonMises(_)
+            | Self::OverCases(_)
             | Self::Expression(_) => None,
         }
     }

@@ -1,5 +1,6 @@
 //! The document of a problem file: serde structures. Their documentation becomes the JSON Schema.
 
+pub mod cases;
 pub mod combined;
 pub mod drives;
 pub mod elements;
@@ -23,6 +24,7 @@ pub mod statics;
 pub mod structures;
 pub mod windows;
 
+use cases::Case;
 use drives::Drive;
 use flexbody_mechanics::system::equilibrium::{KnownStarts, Sought};
 use functions::{Function, Instant, WhichFunction};
@@ -135,6 +137,10 @@ pub struct Document {
     pub load_cases: IndexMap<String, IndexMap<String, CaseLoad>>,
     /// How structures are analysed.
     pub statics: Option<Statics>,
+    /// Cases by name: analyses of this machine with some of its values replaced. Every function of the machine has a value in
+    /// each, "FUNCTION in CASE"; constraints on it hold in all.
+    #[serde(default)]
+    pub cases: IndexMap<String, Case>,
     /// Functions of interest by name.
     #[serde(default)]
     pub functions: IndexMap<String, Function>,

@@ -93,16 +93,34 @@ fn simulated(problem: Problem, pointer: &str) -> Result<(Problem, Simulated), Un
     Ok((problem, at))
 }
 
-/// A ρ for a function at the start.
-fn near(problem: &Problem, at: &Simulated, own: &OpenAggregate) -> Result<f64, Unread> {
+/// ρ for a function at a design, and what it stands for there. Of a function of several cases the sharpest.
+fn of_function(at: &Simulated, own: &OpenAggregate) -> Option<(f64, f64)> {
     let f = own.function;
-    let found = match at {
+    match at {
         Simulated::Motion(simulation) => {
             let at = &simulation.at;
             smoothed::near(&at.scene.functions[f], &at.scene.model, &at.run)
         }
         Simulated::Statics(at) => at.near_rho(f),
-    };
+        Simulated::Cases(at) if at.place(f).is_none() => at.near_rho(f),
+        Simulated::Cases(at) => {
+            let each = at.each().filter_map(|(case, at)| {
+                let function = case.problem.named_or_first(&own.name)?;
+                let own = OpenAggregate {
+                    function,
+                    ..own.clone()
+                };
+                of_function(at, &own)
+            });
+            each.max_by(|a, b| a.0.total_cmp(&b.0))
+        }
+    }
+}
+
+/// A ρ for a function at the start.
+fn near(problem: &Problem, at: &Simulated, own: &OpenAggregate) -> Result<f64, Unread> {
+    let f = own.function;
+    let found = of_function(at, own);
     let (rho, value) = found.ok_or_else(|| Unread::NotChosen {
         pointer: own.pointers[0].clone(),
         reason: "its value at the start is zero, or its quantity has no largest value".to_owned(),

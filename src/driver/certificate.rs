@@ -7,8 +7,9 @@
 //! terms of the gradient. At an optimum the gradient may vanish, as that of a sum of squares does. So Σ |gᵢdᵢ|
 //! at the start counts as well, and of a sum over the motion the sum of the sizes of its terms.
 
-use super::analysed::{AnalysisFailure, Simulated};
+use super::analysed::{AnalysisFailure, InCases, Simulated};
 use super::check::{complex_step, own_size};
+use super::composed::infinitesimal;
 use super::evaluate::{Derivative, Evaluated};
 use super::event;
 use super::frozen::{complex_design, complex_motion, settings};
@@ -42,18 +43,11 @@ pub fn certify(problem: &Problem, done: &Optimisation, tolerance: f64) -> Gradie
     let mut at = |simulated: &Option<Simulated>| match simulated {
         Some(simulated) => {
             let along = (&direction[..], tolerance, &mut sizes[..]);
-            let found = match simulated {
-                Simulated::Motion(simulation) => {
-                    certified(problem, &simulation.at, along, &mut cost)
-                        .map_err(AnalysisFailure::from)
+            of_design(problem, simulated, along, &mut cost).unwrap_or_else(|failure| {
+                CertifiedDesign {
+                    faults: vec![format!("a run of the check failed: {failure}")],
+                    ..CertifiedDesign::default()
                 }
-                Simulated::Statics(at) => {
-                    certified_statics(problem, at, along, &mut cost).map_err(AnalysisFailure::from)
-                }
-            };
-            found.unwrap_or_else(|failure| CertifiedDesign {
-                faults: vec![format!("a run of the check failed: {failure}")],
-                ..CertifiedDesign::default()
             })
         }
         None => CertifiedDesign {
@@ -96,6 +90,78 @@ fn direction(problem: &Problem, seed: u64) -> Vec<f64> {
 
 /// The direction, the tolerance, and the largest Σ |gᵢdᵢ| of each function so far.
 type Along<'a> = (&'a [f64], f64, &'a mut [f64]);
+
+/// The derivatives of all functions at a design.
+fn of_design(
+    problem: &Problem,
+    simulated: &Simulated,
+    along: Along<'_>,
+    cost: &mut CertificateCost,
+) -> Result<CertifiedDesign, AnalysisFailure> {
+    Ok(match simulated {
+        Simulated::Motion(simulation) => certified(problem, &simulation.at, along, cost)?,
+        Simulated::Statics(at) => certified_statics(problem, at, along, cost)?,
+        Simulated::Cases(at) => certified_cases(problem, at, along, cost)?,
+    })
+}
+
+/// The derivatives of the functions of each case, and from these those of functions over cases.
+fn certified_cases(
+    problem: &Problem,
+    at: &InCases<Simulated>,
+    (direction, tolerance, sizes): Along<'_>,
+    cost: &mut CertificateCost,
+) -> Result<CertifiedDesign, AnalysisFailure> {
+    let mut found = CertifiedDesign::default();
+    let mut first = 0;
+    for (case, simulated) in at.each() {
+        let count = case.problem.function_names.len();
+        let along = (direction, tolerance, &mut sizes[first..first + count]);
+        let own = of_design(&case.problem, simulated, along, cost)?;
+        let told = |text: String| format!("in the case \"{}\": {text}", case.name);
+        found.faults.extend(own.faults.into_iter().map(told));
+        found.notes.extend(own.notes.into_iter().map(told));
+        let names = problem.function_names[first..].iter().cloned();
+        found
+            .functions
+            .extend(names.zip(own.functions.into_values()));
+        first += count;
+    }
+    let composition = &problem.composition;
+    let known = |number: Option<f64>| number.unwrap_or(f64::NAN);
+    let pairs: Vec<[f64; 2]> = { found.functions.values() }
+        .map(|own| [own.adjoint, own.complex_step].map(known))
+        .collect();
+    let complex = |k: usize| Complex64::new(at.value(k), COMPLEX_STEP * pairs[k][1]);
+    let values: Vec<Complex64> = (0..pairs.len()).map(complex).collect();
+    let x = complex_design(&at.x, direction);
+    let derivatives = infinitesimal(composition, &x, &values, COMPLEX_STEP);
+    for f in composition.first..problem.function_names.len() {
+        let partials = composition.partials(f, &at.x, &|k| at.value(k));
+        let moving = || partials.by_function.iter().filter(|(_, by)| *by != 0.0);
+        let direct = partials.by_variable.iter().zip(direction);
+        let direct = direct.map(|(by, along)| by * along);
+        let own: f64 = moving().map(|&(k, by)| by * pairs[k][0]).sum();
+        let size = direct.clone().map(f64::abs).sum::<f64>()
+            + moving().map(|&(k, by)| by.abs() * sizes[k]).sum::<f64>();
+        sizes[f] = sizes[f].max(size);
+        let judged = Pair {
+            adjoint: own + direct.sum::<f64>(),
+            complex_step: derivatives[f],
+            size: sizes[f],
+            terms: at.value(f).abs(),
+        };
+        let name = &problem.function_names[f];
+        if !judged.passes(tolerance) {
+            found.faults.push(format!(
+                "the derivative of \"{name}\" is {:.15e} by the adjoint and {:.15e} by the complex step",
+                judged.adjoint, judged.complex_step
+            ));
+        }
+        found.functions.insert(name.clone(), judged.recorded());
+    }
+    Ok(found)
+}
 
 /// The derivatives of all functions at a simulated design.
 fn certified(

@@ -104,11 +104,11 @@ impl<'a> Evaluator<'a> {
                 self.integration.restore(kept);
             }
         }
-        if let Some((place, event)) = self.log.latest()
-            && self.latest != Some(place)
+        if let Some((place, events)) = self.log.latest()
+            && self.latest != Some(*place)
         {
-            self.latest = Some(place);
-            self.integration.event = event;
+            self.latest = Some(*place);
+            self.integration.recall_events(events);
         }
     }
 
@@ -165,7 +165,7 @@ fn at<'e>(
     let found = match last.take().filter(|last| last.x() == x) {
         Some(known) => Ok(known),
         None => {
-            integration.settled = account.settled;
+            integration.settle(account.settled.as_ref());
             let found = match speculative.take(integration, x) {
                 Some(found) => found.map(|evaluated| (evaluated, None)),
                 None => Analysed::with(integration, problem, x, functions),
@@ -179,8 +179,8 @@ fn at<'e>(
             })
         }
     };
-    integration.settled = None;
-    account.event = integration.event;
+    integration.settle(None);
+    account.events = integration.events();
     let found = found.map_err(|failure| {
         account.interrupted = problem.simulation.limits.is_over();
         failure.to_string()
@@ -264,7 +264,7 @@ impl Nlp for Evaluator<'_> {
             Ok(values)
         });
         self.unlowered += match known {
-            true => usize::from(problem.statics.is_none() && !problem.lowered_scene(&x).1),
+            true => usize::from(problem.has_scene() && !problem.lowered_scene(&x).1),
             false => integration.unlowered - before,
         };
         self.follow();

@@ -170,6 +170,8 @@ pub fn of_end(
     let active = active.filter(|own| is_active(&own.name, &outcome.active_constraints));
     let active: Vec<usize> = active.map(|own| own.function).collect();
     let (found, given, rows) = match end {
+        // A sum of misfits over cases is not one of residuals.
+        Simulated::Cases(_) => return Ok(None),
         Simulated::Motion(end) => {
             let given = misfits.iter().all(|&(f, _)| {
                 let mut series = series_of(&end.at.scene, f).iter();
@@ -318,6 +320,7 @@ impl Analysed {
         match self {
             Self::Motion(at) => Ok(of_motion(problem, at, misfits)?),
             Self::Statics(at) => Ok(Some(of_structures(problem, at, misfits)?)),
+            Self::Cases(_) => Ok(None),
         }
     }
 }

@@ -22,6 +22,7 @@ pub(super) fn settings(problem: &Problem, at: &Evaluated) -> Option<Settings> {
             }
         },
         refreshes: 0,
+        cases: Vec::new(),
     });
     integration.chosen().map(|(settings, _)| settings.clone())
 }

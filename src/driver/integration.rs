@@ -5,6 +5,7 @@ mod tangent;
 
 use super::event::{self, Admit};
 use super::flexible_limits;
+use super::known_evaluations::Events;
 use super::memory;
 use crate::functions::resolution::{Resolution, resolution};
 use crate::functions::{Function, Reduction, Scene};
@@ -12,7 +13,7 @@ use crate::integrate::{
     Chosen, Grid, IntegrationFailure, Limits, LinearSolver, Method, Samples, Settings, Spacing,
     Trajectory, choice, has_kinks, simulate, simulate_by,
 };
-use crate::problem::Problem;
+use crate::problem::{Case, Problem};
 
 /// Samples of a motion with steps by tolerance, for tables, figures and events.
 const SAMPLES: usize = 1000;
@@ -61,6 +62,8 @@ pub struct Integration {
     pub event: Option<f64>,
     /// When it comes in the next run, if that is known to the last bit \[s\].
     pub settled: Option<f64>,
+    /// By case of a problem with cases: its integration, if a function of it is asked.
+    pub cases: Vec<Option<Integration>>,
 }
 
 /// Method and steps of an earlier choice.
@@ -73,6 +76,8 @@ pub struct KeptSteps {
     pub grid: Option<Grid>,
     /// Number of earlier choices.
     pub refreshes: usize,
+    /// By case.
+    pub cases: Vec<Option<KeptSteps>>,
 }
 
 /// A change of the steps in use.
@@ -86,7 +91,12 @@ pub struct Refresh {
     pub grid: Option<Grid>,
     /// Why.
     pub reason: String,
+    /// By case: the steps in use from now on.
+    pub cases: Vec<Option<Refresh>>,
 }
+
+/// Name of the method in records of problems with cases.
+pub(super) const OF_CASES: &str = "cases";
 
 impl Integration {
     /// The integration that `problem` requests. `asked` are the functions that will be requested,
@@ -144,12 +154,13 @@ impl Integration {
             gradients,
             event: None,
             settled: None,
+            cases: Vec::new(),
         }
     }
 
-    /// As [`Integration::new`] for the scene of the start. Structures are not integrated.
+    /// As [`Integration::new`] for the scene of the start. Structures are not integrated, and cases have theirs.
     pub fn of(problem: &Problem, asked: Option<&[usize]>, gradients: bool) -> Self {
-        if problem.statics.is_none() {
+        if problem.statics.is_none() && problem.cases.is_none() {
             return Self::new(problem, &problem.scene(&problem.start()), asked, gradients);
         }
         Self {
@@ -168,6 +179,102 @@ impl Integration {
             gradients: false,
             event: None,
             settled: None,
+            cases: Self::of_cases(problem, asked, gradients),
+        }
+    }
+
+    fn of_cases(problem: &Problem, asked: Option<&[usize]>, gradients: bool) -> Vec<Option<Self>> {
+        let Some(cases) = &problem.cases else {
+            return Vec::new();
+        };
+        let wanted = asked.map(|asked| cases.wanted(&problem.composition.of_scene(asked)));
+        let one = |(c, case): (usize, &Case)| match &wanted {
+            None => Some(Self::of(&case.problem, None, gradients)),
+            Some(wanted) if wanted[c].is_empty() => None,
+            Some(wanted) => Some(Self::of(&case.problem, Some(&wanted[c]), gradients)),
+        };
+        cases.list.iter().enumerate().map(one).collect()
+    }
+
+    /// Adds the changes of cases to the counts of all.
+    pub(super) fn count_cases(&mut self) {
+        let own = || self.cases.iter().flatten();
+        let (refreshes, unlowered) = (
+            own().map(|own| own.refreshes).sum(),
+            own().map(|own| own.unlowered).sum(),
+        );
+        (self.refreshes, self.unlowered) = (refreshes, unlowered);
+    }
+
+    /// When the events came in the last runs.
+    pub(super) fn events(&self) -> Events {
+        let of_case = |own: &Option<Self>| own.as_ref()?.event;
+        Events {
+            own: self.event,
+            cases: self.cases.iter().map(of_case).collect(),
+        }
+    }
+
+    /// Begins to look for events where they came in an earlier run.
+    pub(super) fn recall_events(&mut self, events: &Events) {
+        self.event = events.own;
+        for (own, event) in self.cases.iter_mut().zip(&events.cases) {
+            if let Some(own) = own {
+                own.event = *event;
+            }
+        }
+    }
+
+    /// When the events come in the next runs, if that is known to the last bit.
+    pub(super) fn settle(&mut self, events: Option<&Events>) {
+        self.settled = events.and_then(|events| events.own);
+        for (c, own) in self.cases.iter_mut().enumerate() {
+            if let Some(own) = own {
+                own.settled = events.and_then(|events| *events.cases.get(c)?);
+            }
+        }
+    }
+
+    /// The steps in use, if they were chosen, and `why` they are.
+    pub(super) fn in_use(&self, why: &str) -> Option<Refresh> {
+        let cases: Vec<Option<Refresh>> = self
+            .cases
+            .iter()
+            .map(|own| own.as_ref()?.in_use(why))
+            .collect();
+        if !cases.is_empty() {
+            return Some(Refresh {
+                method: OF_CASES.to_owned(),
+                method_reason: None,
+                grid: None,
+                reason: why.to_owned(),
+                cases,
+            });
+        }
+        let (settings, reason) = self.chosen()?;
+        Some(Refresh {
+            method: settings.method.name(),
+            method_reason: Some(reason.to_owned()),
+            grid: match &settings.spacing {
+                Spacing::Frozen(grid) => Some(grid.clone()),
+                Spacing::Steps(_) | Spacing::Tolerance(_) => None,
+            },
+            reason: why.to_owned(),
+            cases,
+        })
+    }
+
+    /// Whether the next runs use steps that were chosen before. Structures have none.
+    pub(super) fn has_steps(&self, problem: &Problem) -> bool {
+        match &problem.cases {
+            Some(cases) => {
+                let all = cases.list.iter().zip(&self.cases);
+                { all }.all(|(case, own)| match own {
+                    Some(own) => own.has_steps(&case.problem),
+                    None => true,
+                })
+            }
+            None => problem.statics.is_some() || self.chosen.is_some(),
         }
     }
 
@@ -197,6 +304,7 @@ impl Integration {
                 Spacing::Steps(_) | Spacing::Tolerance(_) => None,
             },
             reason: why,
+            cases: Vec::new(),
         };
         self.chosen = Some((settings, reason));
         refresh
@@ -204,6 +312,9 @@ impl Integration {
 
     /// Number of steps of the motion, if known.
     pub fn steps(&self) -> Option<usize> {
+        if !self.cases.is_empty() {
+            return self.cases.iter().flatten().map(Self::steps).sum();
+        }
         let spacing = self.chosen.as_ref().map(|(settings, _)| &settings.spacing);
         match spacing.unwrap_or(&self.spacing) {
             Spacing::Steps(steps) => Some(*steps),
@@ -219,6 +330,7 @@ impl Integration {
 
     /// Samples the whole motion from now on, for figures. Functions of the end do not change.
     pub fn see_whole(&mut self) {
+        self.cases.iter_mut().flatten().for_each(Self::see_whole);
         self.samples = match self.samples {
             Samples::Uniform(1) => Samples::Uniform(self.shown),
             Samples::Quadrature(0) => Samples::Quadrature(self.shown),
@@ -232,6 +344,14 @@ impl Integration {
     /// Continues with an earlier choice of steps.
     pub fn restore(&mut self, kept: KeptSteps) {
         self.refreshes = kept.refreshes;
+        if !self.cases.is_empty() {
+            for (own, kept) in self.cases.iter_mut().zip(kept.cases) {
+                if let (Some(own), Some(kept)) = (own, kept) {
+                    own.restore(kept);
+                }
+            }
+            return;
+        }
         let mut settings = Settings {
             method: kept.method,
             ..self.wanted()
@@ -363,6 +483,7 @@ impl Integration {
             method_reason: Some(reason.clone()).filter(|reason| reason != general),
             grid,
             reason: why,
+            cases: Vec::new(),
         });
         self.refreshes += usize::from(self.chosen.is_some() && anew);
         self.chosen = Some((settings, reason));

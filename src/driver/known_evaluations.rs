@@ -28,7 +28,7 @@ pub struct KnownEvaluations<'a> {
     choices: Vec<Choice>,
     in_use: Option<usize>,
     /// The latest requested evaluation of the record, and the time of the event by then.
-    latest: Option<(usize, Option<f64>)>,
+    latest: Option<(usize, Events)>,
     /// The design of that evaluation, the last one simulated.
     simulated: Vec<u64>,
     /// Work of all requested evaluations.
@@ -43,23 +43,32 @@ struct Known {
     place: usize,
     /// The choice of steps in use at that time.
     steps: Option<usize>,
-    event: Option<f64>,
+    events: Events,
     /// Its work, until it is counted.
     work: Work,
+}
+
+/// When motions end at an event, if they do \[s\].
+#[derive(Clone, Debug, Default, PartialEq)]
+pub struct Events {
+    /// That of the scene.
+    pub own: Option<f64>,
+    /// Of a problem with cases: that of each.
+    pub cases: Vec<Option<f64>>,
 }
 
 /// Additional data of an evaluation.
 #[derive(Default)]
 pub struct EvaluationContext {
-    /// Before: time of the event at this design with the steps in use, if known \[s\].
-    pub settled: Option<f64>,
+    /// Before: times of the events at this design with the steps in use, if known.
+    pub settled: Option<Events>,
     /// Before: whether another process simulated this design just before it ended. The extra
     /// simulation is not counted: a resumed run would not repeat it.
     pub repeated: bool,
     /// After: the choice of steps that it caused.
     pub refresh: Option<Refresh>,
-    /// After: time of the event in the last motion, if the scene ends at one \[s\].
-    pub event: Option<f64>,
+    /// After: times of the events in the last motions.
+    pub events: Events,
     /// After: its work.
     pub work: WorkCounts,
     /// After: whether it failed because the run is interrupted. Then it is not recorded.
@@ -84,6 +93,7 @@ impl<'a> KnownEvaluations<'a> {
             design,
             found,
             event,
+            events_of_cases,
             work,
         } in earlier
         {
@@ -95,7 +105,10 @@ impl<'a> KnownEvaluations<'a> {
                         found,
                         place: log.count,
                         steps: log.choices.len().checked_sub(1),
-                        event,
+                        events: Events {
+                            own: event,
+                            cases: events_of_cases,
+                        },
                         work,
                     };
                     log.count += 1;
@@ -117,10 +130,10 @@ impl<'a> KnownEvaluations<'a> {
         kept(steps, *refreshes)
     }
 
-    /// The number of the latest requested evaluation of the record, and the time of the event in
-    /// the last motion by then \[s\].
-    pub fn latest(&self) -> Option<(usize, Option<f64>)> {
-        self.latest
+    /// The number of the latest requested evaluation of the record, and the times of the events in
+    /// the last motions by then.
+    pub fn latest(&self) -> Option<&(usize, Events)> {
+        self.latest.as_ref()
     }
 
     /// Whether values (or gradients) at a design are known.
@@ -137,7 +150,7 @@ impl<'a> KnownEvaluations<'a> {
         let same = |c: &&Choice| {
             let (a, b) = (&c.steps, &steps);
             let same = a.method == b.method && a.ends == b.ends && a.cells == b.cells;
-            same && a.left_out == b.left_out
+            same && a.left_out == b.left_out && a.cases == b.cases
         };
         let refreshes = match self.choices.iter().find(same) {
             Some(known) => known.refreshes,
@@ -213,11 +226,11 @@ impl<'a> KnownEvaluations<'a> {
         found
     }
 
-    /// Time of the event at a design whose values are known with the steps in use.
-    fn settled(&self, design: &[f64]) -> Option<f64> {
+    /// Times of the events at a design whose values are known with the steps in use.
+    fn settled(&self, design: &[f64]) -> Option<Events> {
         let known = self.known.get(&(false, bits(design)))?;
         let judged = matches!(known.found, Found::Values(_)) && known.steps == self.in_use;
-        known.event.filter(|_| judged)
+        judged.then(|| known.events.clone())
     }
 
     /// The known evaluation of a design. The steps in use are then at least those of that time.
@@ -225,8 +238,12 @@ impl<'a> KnownEvaluations<'a> {
         let design = bits(design);
         let known = self.known.get_mut(&(of_gradients, design.clone()))?;
         self.in_use = self.in_use.max(known.steps);
-        if self.latest.is_none_or(|(place, _)| place < known.place) {
-            self.latest = Some((known.place, known.event));
+        if self
+            .latest
+            .as_ref()
+            .is_none_or(|(place, _)| *place < known.place)
+        {
+            self.latest = Some((known.place, known.events.clone()));
             self.simulated = design;
         }
         self.work += std::mem::take(&mut known.work);
@@ -241,24 +258,25 @@ impl<'a> KnownEvaluations<'a> {
         account: EvaluationContext,
     ) {
         self.refreshed(design, account.refresh);
-        let (event, place) = (account.event, self.count);
+        let (events, place) = (account.events, self.count);
         let work = Work::from(account.work);
         self.work += work;
-        self.latest = Some((place, event));
+        self.latest = Some((place, events.clone()));
         self.simulated = bits(design);
         self.count += 1;
         let known = Known {
             found: found.clone(),
             place,
             steps: self.in_use,
-            event,
+            events: events.clone(),
             work: Work::default(),
         };
         self.known.insert((of_gradients, bits(design)), known);
         self.write(EvaluationRecord {
             design: design.to_vec(),
             found,
-            event,
+            event: events.own,
+            events_of_cases: events.cases,
             work,
         });
     }
@@ -267,15 +285,8 @@ impl<'a> KnownEvaluations<'a> {
     /// these steps after an earlier run had changed to others is a change too.
     fn refreshed(&mut self, design: &[f64], refresh: Option<Refresh>) {
         let left = |k: &usize| k + 1 < self.choices.len();
-        if let Some(Refresh {
-            method,
-            method_reason,
-            grid,
-            reason,
-        }) = refresh
-        {
-            let methods = (method, method_reason);
-            self.take(design, steps_in_use(methods, grid.as_ref(), reason));
+        if let Some(refresh) = refresh {
+            self.take(design, steps_of(refresh));
         } else if let Some(k) = self.in_use.filter(left) {
             let steps = StepsInUse {
                 reason: "as before".into(),
@@ -292,6 +303,7 @@ impl<'a> KnownEvaluations<'a> {
             design: design.to_vec(),
             found: Found::Steps(steps),
             event: None,
+            events_of_cases: Vec::new(),
             work: Work::default(),
         });
     }
@@ -300,6 +312,21 @@ impl<'a> KnownEvaluations<'a> {
         if let Some(record) = &mut self.record {
             record(evaluation);
         }
+    }
+}
+
+/// Steps of a choice, as they are recorded.
+pub(super) fn steps_of(refresh: Refresh) -> StepsInUse {
+    let Refresh {
+        method,
+        method_reason,
+        grid,
+        reason,
+        cases,
+    } = refresh;
+    StepsInUse {
+        cases: cases.into_iter().map(|own| own.map(steps_of)).collect(),
+        ..steps_in_use((method, method_reason), grid.as_ref(), reason)
     }
 }
 
@@ -318,13 +345,20 @@ pub(super) fn steps_in_use(
         kinks: grid.map_or_else(Vec::new, |grid| grid.kinks().to_vec()),
         equal: grid.is_some_and(Grid::is_equal),
         ends: grid.map_or_else(Vec::new, |grid| grid.ends().to_vec()),
+        cases: Vec::new(),
     }
 }
 
 /// Recorded steps, after so many other choices.
 pub(super) fn kept(steps: &StepsInUse, refreshes: usize) -> Option<KeptSteps> {
+    let cases = steps.cases.iter().map(|own| kept(own.as_ref()?, 0));
     Some(KeptSteps {
-        method: Method::named(&steps.method)?,
+        cases: cases.collect(),
+        method: match steps.cases.is_empty() {
+            true => Method::named(&steps.method)?,
+            // Cases have theirs.
+            false => Method::Dop853,
+        },
         reason: steps.method_reason.clone(),
         grid: steps.grid(),
         refreshes,
@@ -360,7 +394,7 @@ pub fn head(problem: &Problem) -> Head {
             .collect(),
         settings,
         chained: true,
-        lowered: Some(problem.lowering.is_some()),
+        lowered: Some(problem.is_lowered()),
     }
 }
 
@@ -385,8 +419,10 @@ mod tests {
                 equal: false,
                 cells: Vec::new(),
                 left_out: Vec::new(),
+                cases: Vec::new(),
             }),
             event: None,
+            events_of_cases: Vec::new(),
             work: Work::default(),
         }
     }
@@ -396,6 +432,7 @@ mod tests {
             design: vec![x],
             found: Found::Values(vec![x]),
             event: None,
+            events_of_cases: Vec::new(),
             work: Work::default(),
         }
     }
@@ -457,23 +494,27 @@ mod tests {
         let earlier = vec![known(1.0, 0.1), known(2.0, 0.2), known(3.0, 0.3)];
         let mut log = KnownEvaluations::new(earlier, |record| written.push(record));
         let never = |_: &mut EvaluationContext| -> Result<Vec<f64>, String> { panic!("is known") };
-        for (x, latest) in [(2.0, (1, Some(0.2))), (1.0, (1, Some(0.2)))] {
+        let at = |own: f64| Events {
+            own: Some(own),
+            cases: Vec::new(),
+        };
+        for (x, latest) in [(2.0, (1, at(0.2))), (1.0, (1, at(0.2)))] {
             for _ in 0..2 {
                 assert_eq!(log.values(&[x], never), Ok(vec![x]));
-                assert_eq!(log.latest(), Some(latest));
+                assert_eq!(log.latest(), Some(&latest));
             }
         }
         assert_eq!(log.work().steps, 20);
         // If the values are known, the event is that of their evaluation.
         let gradients = |account: &mut EvaluationContext| {
-            assert_eq!(account.settled, Some(0.1));
-            account.event = Some(0.1);
+            assert_eq!(account.settled, Some(at(0.1)));
+            account.events = at(0.1);
             account.work.steps = 5;
             Ok(vec![vec![1.0]])
         };
         assert_eq!(log.gradients(&[1.0], gradients), Ok(vec![vec![1.0]]));
         assert_eq!(log.values(&[3.0], never), Ok(vec![3.0]));
-        assert_eq!(log.latest(), Some((3, Some(0.1))));
+        assert_eq!(log.latest(), Some(&(3, at(0.1))));
         assert_eq!(log.work().steps, 35);
         drop(log);
         assert_eq!(written.len(), 1);

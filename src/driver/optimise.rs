@@ -10,7 +10,7 @@ use super::known_evaluations::{KnownEvaluations, bits};
 use super::record::record;
 use super::resolved;
 use crate::optimiser::{self, Method, Observer, Options, Outcome, Phase, Row, SavedState, Status};
-use crate::problem::Problem;
+use crate::problem::{Case, Problem};
 use crate::report::evaluations::Work;
 use crate::report::history::{Column, History, HistoryRow};
 use crate::report::optimum::Optimum;
@@ -161,18 +161,13 @@ impl Solved {
             (self.counts, refreshes),
             (&start, end.as_ref()),
         );
-        if let Some(Simulated::Motion(end)) = &end {
+        if let Some(end) = &end {
             let all: Vec<usize> = requested(problem).collect();
-            let chaotic = chaos::of_motion(problem, &end.at, &all);
             let ended = !matches!(self.outcome.status, Status::Interrupted | Status::TimeLimit);
-            let unresolved = match (&chaotic, &start) {
-                (None, Ok(Simulated::Motion(start))) if ended => {
-                    resolved::at_the_end(problem, (&start.at, &end.at), &all)
-                }
-                _ => None,
-            };
-            let told = chaotic.map(|found| found.to_string()).or(unresolved);
-            optimum.warnings.extend(told);
+            let start = start.as_ref().ok().filter(|_| ended);
+            optimum
+                .warnings
+                .extend(doubtful(problem, (start, end), &all));
         }
         if let Some(end) = &end {
             match fit::of_end(problem, &self.outcome, end) {
@@ -206,6 +201,44 @@ impl Solved {
             integration: self.integration,
             start: start.ok(),
             end,
+        }
+    }
+}
+
+/// Why derivatives of the functions `which` at the end mean little: a chaotic motion, or steps that do not resolve them beside
+/// those at the start.
+fn doubtful(
+    problem: &Problem,
+    (start, end): (Option<&Simulated>, &Simulated),
+    which: &[usize],
+) -> Vec<String> {
+    match end {
+        Simulated::Motion(end) => {
+            let chaotic = chaos::of_motion(problem, &end.at, which);
+            let unresolved = match (&chaotic, start) {
+                (None, Some(Simulated::Motion(start))) => {
+                    resolved::at_the_end(problem, (&start.at, &end.at), which)
+                }
+                _ => None,
+            };
+            let told = chaotic.map(|found| found.to_string()).or(unresolved);
+            told.into_iter().collect()
+        }
+        Simulated::Statics(_) => Vec::new(),
+        Simulated::Cases(ends) => {
+            let wanted = (ends.cases).wanted(&problem.composition.of_scene(which));
+            let starts = match start {
+                Some(Simulated::Cases(starts)) => &starts.list[..],
+                _ => &[],
+            };
+            let of_case = |(c, (case, end)): (usize, (&Case, &Simulated))| {
+                let start = starts.get(c).and_then(Option::as_ref);
+                let told = doubtful(&case.problem, (start, end), &wanted[c]);
+                told.into_iter()
+                    .map(|why| format!("in the case \"{}\": {why}", case.name))
+                    .collect::<Vec<_>>()
+            };
+            ends.each().enumerate().flat_map(of_case).collect()
         }
     }
 }

@@ -86,7 +86,7 @@ pub(super) fn record(
         lower_bounds: bounds(&outcome.multipliers.lower_bounds),
         upper_bounds: bounds(&outcome.multipliers.upper_bounds),
     };
-    warnings.extend(match problem.is_rest() {
+    warnings.extend(match problem.is_rest() || problem.cases.is_some() {
         true => notes_of_start(problem, &x),
         false => notes_of_start(problem, &problem.start()),
     });
@@ -277,7 +277,7 @@ fn beyond_margin(problem: &Problem, name: &str, found: &ConstraintValue) -> Opti
         None | Some("" | "1") => String::new(),
         Some(unit) => format!(" {unit}"),
     };
-    let finer = match problem.statics {
+    let finer = match &problem.statics {
         Some(_) => "a finer mesh",
         None => "a smaller tolerance or more steps",
     };

@@ -59,7 +59,7 @@ impl Recorded {
         };
         let (first, design) = (recorded(|d| d.start)?, recorded(|d| d.value)?);
         if state.is_some_and(|state| state.as_written) {
-            problem.lowering = None;
+            problem.change_all(&|own| own.lowering = None);
         }
         let mut problem = problem.for_optimisation().unwrap_or(problem);
         problem.restart(&first);

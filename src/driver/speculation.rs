@@ -29,8 +29,16 @@ fn is_possible(problem: &Problem, integration: &Integration) -> bool {
     if problem.statics.is_some() {
         return rayon::current_num_threads() > 1;
     }
-    let event = problem.scene::<f64>(&problem.start()).until.is_some();
-    rayon::current_num_threads() > 1 && integration.chosen().is_some() && !event
+    rayon::current_num_threads() > 1 && integration.has_steps(problem) && !has_event(problem)
+}
+
+/// Whether a motion ends at an event.
+fn has_event(problem: &Problem) -> bool {
+    match &problem.cases {
+        Some(cases) => cases.list.iter().any(|case| has_event(&case.problem)),
+        None if problem.statics.is_some() => false,
+        None => problem.scene::<f64>(&problem.start()).until.is_some(),
+    }
 }
 
 /// The design `x` simulated with the steps of `integration`, or `None` if it needs others.

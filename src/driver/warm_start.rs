@@ -1,8 +1,7 @@
 //! A start from the end of another optimisation.
 
 use super::integration::{Integration, KeptSteps};
-use super::known_evaluations::{kept, steps_in_use};
-use crate::integrate::Spacing;
+use super::known_evaluations::{kept, steps_of};
 use crate::optimiser::{Outcome, SavedState};
 use crate::problem::{Problem, Sense};
 use crate::report::evaluations::StepsInUse;
@@ -35,16 +34,12 @@ pub struct WarmStart {
 impl WarmStart {
     /// The state at the end of a run.
     pub fn of(problem: &Problem, outcome: &Outcome, integration: &Integration) -> Option<Self> {
-        let steps = integration.chosen().and_then(|(settings, reason)| {
-            let Spacing::Frozen(grid) = &settings.spacing else {
-                return None;
-            };
-            let method = (settings.method.name(), Some(reason.to_owned()));
-            Some(steps_in_use(method, Some(grid), "at the end".into()))
-        });
+        let steps = integration.in_use("at the end");
+        let steps = steps.filter(|own| own.grid.is_some() || !own.cases.is_empty());
+        let steps = steps.map(steps_of);
         Some(Self {
             steps,
-            as_written: problem.lowering.is_none(),
+            as_written: !problem.is_lowered(),
             variables: variables(problem),
             constraints: constraints(problem),
             objective: objective(problem),

@@ -52,11 +52,20 @@ pub fn of_optimisation(problem: &Problem, done: &Optimisation) -> Vec<NamedFile>
     of_ends(problem, &Ends::of_optimisation(done), &done.history)
 }
 
-/// Figures of the two ends of an optimisation.
+/// Figures of the two ends of an optimisation; those of cases are [`of_designs`].
 pub fn of_ends(problem: &Problem, ends: &Ends, history: &History) -> Vec<NamedFile> {
+    match (&problem.cases, &problem.statics) {
+        (Some(_), _) => drawn(vec![("convergence.svg", convergence(history))]),
+        (None, Some(_)) => of_structures::figures(problem, &ends.structures, Some(history)),
+        (None, None) => figures(problem, &ends.motions, Some(history)),
+    }
+}
+
+/// Figures of designs without a history, such as those of a case.
+pub fn of_designs(problem: &Problem, ends: &Ends) -> Vec<NamedFile> {
     match problem.statics {
-        Some(_) => of_structures::figures(problem, &ends.structures, Some(history)),
-        None => figures(problem, &ends.motions, Some(history)),
+        Some(_) => of_structures::figures(problem, &ends.structures, None),
+        None => figures(problem, &ends.motions, None),
     }
 }
 

@@ -38,4 +38,4 @@ use flexbody_problem as problem;
 use flexbody_report as report;
 
 pub use error::FigureError;
-pub use files::{NAMES, NamedFile, of_ends, of_optimisation, of_simulation};
+pub use files::{NAMES, NamedFile, of_designs, of_ends, of_optimisation, of_simulation};

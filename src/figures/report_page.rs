@@ -66,19 +66,39 @@ pub fn page(
     ends: &Ends,
     (of_run, made): (Option<(&Optimum, &History)>, String),
 ) -> Result<String, serde_json::Error> {
-    let motions: Vec<Shown> = (ends.motions.iter())
-        .map(|(title, simulation)| Shown::new(problem, title, simulation))
-        .collect();
-    let mut notes = problem.notes_of_input();
-    let mut stages = of_structures::stages(problem, &ends.structures);
-    notes.extend(of_structures::left_out(&ends.structures));
-    let shown = motions.iter().map(|own| stage(own, &mut notes));
-    let (still, moving): (Vec<Option<Stage>>, Vec<Stage>) = shown.unzip();
-    stages.extend(moving);
-    stages.extend(still.into_iter().flatten());
-    share_scales(&mut stages);
     let mut charts = of_run.map_or_else(Vec::new, |(_, history)| convergence(history));
-    charts.extend(curves(problem, &motions));
+    let (mut stages, mut notes) = (Vec::new(), Vec::new());
+    let mut add = |mut seen: Seen, case: &str| {
+        if !case.is_empty() {
+            let titled = |title: &String| match title.is_empty() {
+                true => case.to_owned(),
+                false => format!("{case}: {title}"),
+            };
+            let stages = seen.stages.iter_mut().map(|own| &mut own.title);
+            let all = stages.chain(seen.charts.iter_mut().map(|own| &mut own.title));
+            all.for_each(|title| *title = titled(title));
+        }
+        stages.extend(seen.stages);
+        charts.extend(seen.charts);
+        notes.extend(seen.notes);
+    };
+    match ends.cases.is_empty() {
+        true => add(seen(problem, ends), ""),
+        false => {
+            for (case, ends) in &ends.cases {
+                add(seen(&case.problem, ends), &case.name);
+            }
+        }
+    }
+    let mut once: Vec<String> = Vec::new();
+    notes.retain(|note| {
+        let is_new = !once.contains(note);
+        if is_new {
+            once.push(note.clone());
+        }
+        is_new
+    });
+    share_scales(&mut stages);
     page::html(&page::Page {
         name: &problem.name,
         description: problem.document["description"].as_str().unwrap_or(""),
@@ -96,6 +116,31 @@ pub fn page(
         goes_on: false,
         version: env!("CARGO_PKG_VERSION"),
     })
+}
+
+/// What a page shows of designs of one scene.
+struct Seen {
+    stages: Vec<Stage>,
+    charts: Vec<Chart>,
+    notes: Vec<String>,
+}
+
+fn seen(problem: &Problem, ends: &Ends) -> Seen {
+    let motions: Vec<Shown> = (ends.motions.iter())
+        .map(|(title, simulation)| Shown::new(problem, title, simulation))
+        .collect();
+    let mut notes = problem.notes_of_input();
+    let mut stages = of_structures::stages(problem, &ends.structures);
+    notes.extend(of_structures::left_out(&ends.structures));
+    let shown = motions.iter().map(|own| stage(own, &mut notes));
+    let (still, moving): (Vec<Option<Stage>>, Vec<Stage>) = shown.unzip();
+    stages.extend(moving);
+    stages.extend(still.into_iter().flatten());
+    Seen {
+        stages,
+        charts: curves(problem, &motions),
+        notes,
+    }
 }
 
 /// The page of an optimisation that goes on: its convergence so far.
@@ -123,6 +168,10 @@ pub fn so_far(problem: &Problem, history: &History) -> Result<String, serde_json
 /// The functions of a design.
 fn functions(problem: &Problem, ends: &Ends) -> Vec<Value> {
     let of = |f: usize| -> Option<(f64, Option<f64>)> {
+        if let Some(all) = ends.in_cases {
+            let truth = || Some(all.smoothed(f)?.value);
+            return Some((all.value(f), all.maximum(f).or_else(truth)));
+        }
         if let Some((_, own)) = ends.motions.first() {
             let found = own.at.function(f);
             return Some((found.value, found.maximum.map(|own| own.value)));
@@ -173,7 +222,8 @@ fn curves(problem: &Problem, motions: &[Shown]) -> Vec<Chart> {
     };
     let mut all = Vec::new();
     let mut shown: Vec<usize> = requested(problem).collect();
-    if shown.is_empty() {
+    // Functions over cases need those of a case.
+    if problem.objective.is_none() {
         shown = (0..problem.function_names.len()).collect();
     }
     let mut shown = problem.composition.of_scene(&shown).into_owned();

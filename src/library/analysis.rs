@@ -1,7 +1,7 @@
 //! Consecutive designs: values and exact gradients on kept steps.
 
 use super::SimulationError;
-use super::response::Motion;
+use super::response::{Motion, has_one_motion};
 use crate::driver::integration::Integration;
 use crate::driver::{Analysed, AnalysisFailure, Evaluated};
 use crate::integrate::WorkCounts;
@@ -48,9 +48,7 @@ impl Analysis {
     /// # Errors
     /// As of [`Analysis::at`], or the problem is one of structures without a motion.
     pub fn motion(&mut self, x: &[f64]) -> Result<Motion, SimulationError> {
-        if self.problem.statics.is_some() {
-            return Err(AnalysisFailure::NoMotion.into());
-        }
+        has_one_motion(&self.problem)?;
         let evaluate = |integration: &mut Integration| {
             let found = Evaluated::with(integration, &self.problem, x);
             found.map_err(AnalysisFailure::from)

@@ -19,7 +19,7 @@ impl Interrupt {
 
     /// Makes a problem heed it.
     pub fn attach(&self, problem: &mut Problem) {
-        problem.simulation.limits.progress = Some(self.progress.clone());
+        problem.change_all(&|own| own.simulation.limits.progress = Some(self.progress.clone()));
     }
 
     /// Ends the simulations under way, and lets no other begin.

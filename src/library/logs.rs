@@ -141,10 +141,10 @@ impl Opened {
                     0 => "equal".into(),
                     ends => (ends - 1).to_string(),
                 };
-                tell(&format!(
-                    "{count} steps by {}: {}\n",
-                    steps.method, steps.reason
-                ));
+                tell(&match steps.cases.is_empty() {
+                    true => format!("{count} steps by {}: {}\n", steps.method, steps.reason),
+                    false => format!("steps: {}\n", steps.reason),
+                });
             }
             if let Err(error) = log.append(&evaluation)
                 && let Ok(mut first) = fault.lock()

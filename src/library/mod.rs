@@ -26,7 +26,7 @@ pub(crate) mod written;
 
 use crate::driver;
 use crate::driver::AnalysisFailure;
-use crate::problem::Problem;
+use crate::problem::{Case, Problem};
 
 pub use crate::driver::CheckedDerivative;
 pub use analysis::{Analysis, Design};
@@ -57,6 +57,14 @@ pub fn check(problem: &Problem, x: &[f64]) -> Result<Vec<CheckedDerivative>, Sim
 /// Why derivatives at the design `x` mean nothing although they are exact for its time steps: the steps do not
 /// resolve them. One sentence for each, then advice; empty if they are resolved.
 pub fn unresolved(problem: &Problem, x: &[f64]) -> Vec<String> {
+    if let Some(cases) = &problem.cases {
+        let of_case = |case: &Case| {
+            let own = unresolved(&case.problem, x).into_iter();
+            own.map(|why| format!("in the case \"{}\": {why}", case.name))
+                .collect::<Vec<_>>()
+        };
+        return cases.list.iter().flat_map(of_case).collect();
+    }
     if problem.statics.is_some() {
         return Vec::new();
     }

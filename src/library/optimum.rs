@@ -378,10 +378,7 @@ pub fn page_of_design(problem: &Problem, x: &[f64], by: &str) -> Result<String, 
     let undefined =
         |failure: driver::AnalysisFailure| OptimisationError::Undefined(failure.to_string());
     let simulated = Simulated::of(problem, x).map_err(undefined)?;
-    let ends = match &simulated {
-        Simulated::Motion(own) => Ends::of_motion(own),
-        Simulated::Statics(own) => Ends::of_structure(own),
-    };
+    let ends = Ends::of(&simulated);
     let made = (None, super::made::made(by));
     Ok(page(problem, String::new(), &ends, made).map_err(PageError::from)?)
 }

@@ -20,13 +20,22 @@ pub(super) const ROUND_OFF: f64 = 1e-12;
 /// The joints cannot be closed, the motion cannot be integrated to its end, or the problem is one of
 /// structures without a motion.
 pub fn simulate(problem: &Problem, x: &[f64]) -> Result<Motion, SimulationError> {
-    if problem.statics.is_some() {
-        return Err(AnalysisFailure::NoMotion.into());
-    }
+    has_one_motion(problem)?;
     let mut integration = Integration::of(problem, None, false);
     let found = Evaluated::with(&mut integration, problem, x);
     let (evaluated, _) = found.map_err(AnalysisFailure::from)?;
     Ok(Motion::new(Arc::new(problem.clone()), evaluated))
+}
+
+/// Refuses a problem of structures, and one of several cases.
+pub(super) fn has_one_motion(problem: &Problem) -> Result<(), SimulationError> {
+    if problem.cases.is_some() {
+        return Err(AnalysisFailure::SeveralCases.into());
+    }
+    if problem.statics.is_some() {
+        return Err(AnalysisFailure::NoMotion.into());
+    }
+    Ok(())
 }
 
 fn is_inside(fraction: f64) -> bool {

@@ -1,6 +1,7 @@
 //! Structures at rest under load cases, their modes, and the start of a motion in equilibrium.
 
 use super::SimulationError;
+use super::response::has_one_motion;
 use super::states::BodyState;
 use crate::driver::statics::StaticDesign;
 use crate::driver::{AnalysisFailure, Simulated};
@@ -53,6 +54,9 @@ fn list(all: &[Vec3<f64>]) -> Vec<[f64; 3]> {
 }
 
 fn structures(problem: &Problem, x: &[f64]) -> Result<StaticDesign, SimulationError> {
+    if problem.cases.is_some() {
+        return Err(AnalysisFailure::SeveralCases.into());
+    }
     match Simulated::of_statics(problem, x)? {
         Some(design) => Ok(design),
         None => Err(AnalysisFailure::Undefined(
@@ -120,9 +124,7 @@ pub fn start_states(
     problem: &Problem,
     x: &[f64],
 ) -> Result<Vec<(String, BodyState, Vec<f64>)>, SimulationError> {
-    if problem.statics.is_some() {
-        return Err(AnalysisFailure::NoMotion.into());
-    }
+    has_one_motion(problem)?;
     let scene = problem.unlowered_scene::<f64>(x);
     let assembly = |failure| AnalysisFailure::from(IntegrationFailure::Assembly(failure));
     scene.admit_start().map_err(AnalysisFailure::from)?;

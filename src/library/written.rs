@@ -6,7 +6,7 @@ use crate::driver::{Optimisation, WarmStart};
 use crate::figures;
 use crate::figures::report_page::page;
 use crate::problem::Problem;
-use crate::report::{History, Optimum, ReportError, atomic_write, write_all};
+use crate::report::{History, Optimum, ReportError, atomic_write, prepare_directory, write_all};
 use std::path::{Path, PathBuf};
 
 /// The record of the optimum.
@@ -89,13 +89,32 @@ pub(crate) fn draw(directory: &Path, figures: Vec<figures::NamedFile>) -> Vec<Re
     missing
 }
 
-/// [`draw`] of the figures of an optimisation; all figures of an earlier run are removed.
+/// [`draw`] of the figures of an optimisation; all figures of an earlier run are removed. Those of cases are in folders of
+/// their names.
 pub(crate) fn draw_optimisation(
     directory: &Path,
     problem: &Problem,
     done: &Optimisation,
 ) -> Vec<ReportError> {
-    let drawn = figures::of_optimisation(problem, done);
+    let mut missing = replace(directory, figures::of_optimisation(problem, done));
+    for (case, ends) in &Ends::of_optimisation(done).cases {
+        let drawn = figures::of_designs(&case.problem, ends);
+        missing.extend(draw_case(directory, &case.name, drawn));
+    }
+    missing
+}
+
+/// Writes the figures of a case into its folder; all figures of an earlier run there are removed.
+fn draw_case(directory: &Path, name: &str, drawn: Vec<figures::NamedFile>) -> Vec<ReportError> {
+    let own = directory.join(name);
+    match prepare_directory(&own) {
+        Ok(_held) => replace(&own, drawn),
+        Err(error) => vec![error],
+    }
+}
+
+/// [`draw`]; other figures in the directory are removed.
+fn replace(directory: &Path, drawn: Vec<figures::NamedFile>) -> Vec<ReportError> {
     let is_drawn = |name: &&&str| drawn.iter().any(|(own, _)| own == *name);
     for name in figures::NAMES.iter().filter(|name| !is_drawn(name)) {
         let _ = std::fs::remove_file(directory.join(name));

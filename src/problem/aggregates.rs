@@ -95,6 +95,16 @@ impl OpenAggregate {
 }
 
 impl Problem {
+    /// The function of this name, or the first of a family or of those in cases.
+    pub fn named_or_first(&self, name: &str) -> Option<usize> {
+        let (family, in_case) = (format!("{name}["), format!("{name} in "));
+        let is_one = |own: &String| {
+            let other = own.starts_with(&family) || own.starts_with(&in_case);
+            own == name || other
+        };
+        self.function_names.iter().position(is_one)
+    }
+
     /// The functions with aggregates whose ρ the file leaves out. Their values are NaN: a problem is evaluated when each ρ is
     /// chosen.
     pub fn open_aggregates(&self) -> Vec<OpenAggregate> {
@@ -103,9 +113,7 @@ impl Problem {
         };
         let open = functions.iter().filter_map(|(name, value)| {
             let own = OpenAggregate::of(name, &join("/functions", name), value);
-            let family = format!("{name}[");
-            let mut names = self.function_names.iter();
-            let function = names.position(|own| own == name || own.starts_with(&family))?;
+            let function = self.named_or_first(name)?;
             (!own.pointers.is_empty()).then_some(OpenAggregate { function, ..own })
         });
         open.collect()

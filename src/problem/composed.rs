@@ -3,6 +3,7 @@
 //!
 //! Functions of the scene come first, in the order of the file, then those of expressions, each after those that it names.
 
+use super::Variable;
 use super::derived::Derived;
 use super::expression::{Expression, Operator};
 use crate::math::{Dual, Scalar};
@@ -38,6 +39,23 @@ pub struct Composition {
     pub list: Vec<Composed>,
     /// Numbers that follow from a design.
     pub derived: Derived,
+}
+
+/// Σ ((x − x0)/s)² from the start x0, each variable in its scale s.
+pub(super) fn distance_from_start(variables: &[Variable]) -> Composed {
+    let both = |operator, a, b| Expression::Binary(operator, Box::new([a, b]));
+    let square = |(place, own): (usize, &Variable)| {
+        let start = Expression::Number(own.start);
+        let change = both(Operator::Minus, Expression::Name(Term::Place(place)), start);
+        let scaled = both(Operator::Over, change, Expression::Number(own.scale));
+        both(Operator::Power, scaled, Expression::Number(2.0))
+    };
+    let squares = variables.iter().enumerate().map(square);
+    let sum = squares.reduce(|sum, own| both(Operator::Plus, sum, own));
+    Composed {
+        expression: sum.unwrap_or(Expression::Number(0.0)),
+        unit: "1".to_owned(),
+    }
 }
 
 /// The value of an expression that neither functions nor variables change.
@@ -176,6 +194,7 @@ impl Composition {
             Expression::Number(_)
             | Expression::Name(_)
             | Expression::Call(..)
+            | Expression::Ks(..)
             | Expression::Angle(_) => None,
         }
     }
@@ -187,6 +206,33 @@ impl Composition {
         }
         let own = self.of_scene(&[f]).iter().map(|&g| (g, of(g))).collect();
         self.follow(f, &self.derived.extend(x), own)
+    }
+
+    /// What function f stands for, with the true values of functions of the scene; `None` if no expression smooths it.
+    pub fn sharp(&self, f: usize, x: &[f64], of: &impl Fn(usize) -> f64) -> Option<f64> {
+        let needed = self.needed(&[f]);
+        let mut parts = needed.iter().zip(&self.list).filter(|(needed, _)| **needed);
+        if !parts.any(|(_, own)| own.expression.is_smoothed()) {
+            return None;
+        }
+        let mut sharp = self.clone();
+        for own in &mut sharp.list {
+            own.expression = own.expression.sharp();
+        }
+        Some(sharp.value(f, x, of))
+    }
+
+    /// ρ of function f, if it is a smooth bound over cases.
+    pub fn rho(&self, f: usize) -> Option<f64> {
+        let own = self.list.get(f.checked_sub(self.first)?)?;
+        match &own.expression {
+            Expression::Ks(rho, _) => Some(*rho),
+            Expression::Minus(inner) => match &**inner {
+                Expression::Ks(rho, _) => Some(*rho),
+                _ => None,
+            },
+            _ => None,
+        }
     }
 
     /// Value of function f, with those of functions of the scene and the numbers that terms may be.

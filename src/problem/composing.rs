@@ -1,14 +1,17 @@
 //! Reads expressions of functions: names, order and units.
 
+use super::aggregates::rho_of;
+use super::cases::value_in_case;
 use super::composed::{Composed, Composition, Term};
 use super::derived::{Derived, place};
-use super::expression::{Expression, MARK, Placed};
+use super::expression::{Call, Expression, MARK, Operator, Placed};
 use super::expression_units::{Known, unit};
 use super::finding::{Finding, Part};
 use super::pointer::{advice, join};
 use super::prune::Damage;
 use super::source::Source;
 use crate::math::unit::Unit;
+use crate::schema::cases::{ByCases, Extreme, OverCases};
 use crate::schema::functions::{Function, WhichFunction};
 use crate::schema::{Document, Objective};
 use indexmap::IndexMap;
@@ -85,7 +88,7 @@ pub(super) fn is_wanted(document: &Document, function: &str) -> bool {
 }
 
 /// An expression without the mark that expressions of numbers have.
-fn without_mark(text: &str) -> &str {
+pub(super) fn without_mark(text: &str) -> &str {
     text.strip_prefix(MARK).unwrap_or(text)
 }
 
@@ -145,7 +148,10 @@ impl Composing {
                         continue;
                     }
                     let mut free = own.clone();
-                    while written.functions.contains_key(&free) {
+                    // An expression may be the name of a parameter alone.
+                    let is_parameter =
+                        |name: &str| parameters.is_some_and(|all| all.contains_key(name));
+                    while written.functions.contains_key(&free) || is_parameter(&free) {
                         free.push('\'');
                     }
                     in_place.insert(own, free.clone());
@@ -160,6 +166,20 @@ impl Composing {
                 expression,
             });
         }
+        let over = written
+            .functions
+            .iter()
+            .filter_map(|(name, own)| match own {
+                Function::OverCases(own) => Some(Written {
+                    name: name.clone(),
+                    pointer: join(&join("/functions", name), "over_cases"),
+                    text: String::new(),
+                    skipped: 0,
+                    expression: over_cases(written, own),
+                }),
+                _ => None,
+            });
+        list.extend(over);
         for own in &list {
             for name in own.expression.names() {
                 if let Some(finding) = wrong_name(written, parameters, damage, (own, name)) {
@@ -277,9 +297,58 @@ impl Composing {
 
 /// Removes the functions that expressions give.
 pub(super) fn strip(document: &mut Document) {
-    document
-        .functions
-        .retain(|_, function| expression_of(function).is_none());
+    document.functions.retain(|_, function| {
+        !matches!(function, Function::Expression(_) | Function::OverCases(_))
+    });
+}
+
+/// A function over cases as an expression of its values in these.
+fn over_cases(written: &Document, own: &OverCases) -> Expression<Placed> {
+    let weights = own.weights(written.cases.keys().map(String::as_str));
+    let number = |x: f64| Expression::Number(x);
+    let value = |case: &str| {
+        Expression::Name(Placed {
+            name: value_in_case(&own.function, case),
+            at: 0..0,
+        })
+    };
+    let both = |operator, a, b| Expression::Binary(operator, Box::new([a, b]));
+    // Equal weights of one leave values as they are.
+    let weighted = |weight: f64, of| match weight {
+        1.0 => of,
+        weight => both(Operator::Times, number(weight), of),
+    };
+    let sum = |terms: &mut dyn Iterator<Item = Expression<Placed>>| {
+        let sum = terms.reduce(|sum, term| both(Operator::Plus, sum, term));
+        sum.unwrap_or(Expression::Number(0.0))
+    };
+    let of_all = || sum(&mut weights.iter().map(|&(case, w)| weighted(w, value(case))));
+    let total: f64 = weights.iter().map(|(_, weight)| weight).sum();
+    let mean = || both(Operator::Over, of_all(), number(total));
+    match &own.by {
+        ByCases::Sum => of_all(),
+        ByCases::Mean => mean(),
+        ByCases::Deviation => {
+            let square = |&(case, w): &(&str, f64)| {
+                let distance = both(Operator::Minus, value(case), mean());
+                weighted(w, both(Operator::Power, distance, number(2.0)))
+            };
+            let squares = sum(&mut weights.iter().map(square));
+            let variance = both(Operator::Over, squares, number(total));
+            Expression::Call(Call::Sqrt, Box::new(variance))
+        }
+        ByCases::Ks(ks) => {
+            let rho = rho_of(ks.rho);
+            let all = weights.iter().map(|(case, _)| value(case));
+            match ks.of.unwrap_or_default() {
+                Extreme::Largest => Expression::Ks(rho, all.collect()),
+                Extreme::Smallest => {
+                    let minus = |own| Expression::Minus(Box::new(own));
+                    minus(Expression::Ks(rho, all.map(minus).collect()))
+                }
+            }
+        }
+    }
 }
 
 /// Why a name of an expression stands for nothing, or for nothing that is one number.

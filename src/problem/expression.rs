@@ -10,6 +10,7 @@
 //! ```
 
 use crate::math::Scalar;
+use crate::math::soft_max::SoftMax;
 use std::f64::consts::PI;
 use std::ops::Range;
 
@@ -41,6 +42,9 @@ pub enum Expression<N> {
     Call(Call, Box<Self>),
     /// The angle of the point (second, first).
     Angle(Box<[Self; 2]>),
+    /// (1/ρ) ln Σ e^{ρ f}, a smooth bound of the largest; of infinite ρ the largest itself. No grammar: functions over cases
+    /// are of this kind.
+    Ks(f64, Vec<Self>),
 }
 
 /// What joins two expressions.
@@ -163,6 +167,10 @@ impl<N> Expression<N> {
             Self::Name(name) => Expression::Name(of(name)?),
             Self::Minus(inner) => Expression::Minus(Box::new(inner.named(of)?)),
             Self::Call(call, inner) => Expression::Call(*call, Box::new(inner.named(of)?)),
+            Self::Ks(rho, all) => {
+                let all = all.iter().map(|own| own.named(of));
+                Expression::Ks(*rho, all.collect::<Result<_, _>>()?)
+            }
         })
     }
 
@@ -175,6 +183,7 @@ impl<N> Expression<N> {
             Self::Binary(_, pair) | Self::Angle(pair) => {
                 pair.iter().flat_map(Self::names).collect()
             }
+            Self::Ks(_, all) => all.iter().flat_map(Self::names).collect(),
         }
     }
 
@@ -186,6 +195,15 @@ impl<N> Expression<N> {
             Self::Minus(inner) => -inner.value(of),
             Self::Call(call, inner) => call.value(inner.value(of)),
             Self::Angle(pair) => pair[0].value(of).atan2(pair[1].value(of)),
+            Self::Ks(rho, all) => {
+                let values: Vec<S> = all.iter().map(|own| own.value(of)).collect();
+                match rho.is_infinite() {
+                    true => { values.into_iter() }.fold(S::from(f64::NEG_INFINITY), |most, own| {
+                        if own.re() > most.re() { own } else { most }
+                    }),
+                    false => SoftMax::new(&values, |_| S::one(), *rho).ks,
+                }
+            }
             Self::Binary(operator, pair) => {
                 let (a, b) = (pair[0].value(of), pair[1].value(of));
                 match operator {
@@ -199,6 +217,32 @@ impl<N> Expression<N> {
                     },
                 }
             }
+        }
+    }
+
+    /// What it stands for: smooth bounds of a largest value are the largest value.
+    pub fn sharp(&self) -> Self
+    where
+        N: Clone,
+    {
+        let both = |pair: &[Self; 2]| Box::new([pair[0].sharp(), pair[1].sharp()]);
+        match self {
+            Self::Number(_) | Self::Name(_) => self.clone(),
+            Self::Minus(inner) => Self::Minus(Box::new(inner.sharp())),
+            Self::Call(call, inner) => Self::Call(*call, Box::new(inner.sharp())),
+            Self::Binary(operator, pair) => Self::Binary(*operator, both(pair)),
+            Self::Angle(pair) => Self::Angle(both(pair)),
+            Self::Ks(_, all) => Self::Ks(f64::INFINITY, all.iter().map(Self::sharp).collect()),
+        }
+    }
+
+    /// Whether something in it is smoothed.
+    pub fn is_smoothed(&self) -> bool {
+        match self {
+            Self::Number(_) | Self::Name(_) => false,
+            Self::Minus(inner) | Self::Call(_, inner) => inner.is_smoothed(),
+            Self::Binary(_, pair) | Self::Angle(pair) => pair.iter().any(Self::is_smoothed),
+            Self::Ks(..) => true,
         }
     }
 

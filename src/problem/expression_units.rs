@@ -54,6 +54,11 @@ pub fn unit(
                 exact: true,
             }
         }
+        // The values of one function.
+        Expression::Ks(_, all) => match all.first() {
+            Some(first) => unit(first, of)?,
+            None => number(false),
+        },
         Expression::Call(Call::Sqrt, inner) => {
             let own = unit(inner, of)?;
             Known {

@@ -2,6 +2,7 @@
 
 use super::finding::{Finding, Part};
 use super::overrides::Override;
+use super::pointer::{is_below, join};
 use super::source::Source;
 use super::text::{shortened, visible};
 use std::fmt;
@@ -74,6 +75,30 @@ impl Faults {
             list = once;
         }
         Self { list }
+    }
+}
+
+impl Faults {
+    /// Those of a case: each names it, and one of a value that the case sets is at its place there.
+    pub(super) fn in_case(
+        mut self,
+        case: &str,
+        sets: &[String],
+        (file, source): (&str, &Source),
+    ) -> Self {
+        for fault in &mut self.list {
+            let of_case = format!("this is in the case \"{case}\"");
+            let hint = [fault.hint.take(), Some(of_case)];
+            let hint = hint.into_iter().flatten().collect::<Vec<_>>().join("; ");
+            fault.hint = Some(hint);
+            let set = sets.iter().find(|path| is_below(&fault.path, path));
+            if let Some(path) = set {
+                let pointer = join(&join(&join("/cases", case), "set"), path);
+                let finding = Finding::new(pointer, &fault.found, &fault.expected);
+                *fault = locate(finding.hint(fault.hint.take()), file, source, &[]);
+            }
+        }
+        self
     }
 }
 

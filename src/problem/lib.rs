@@ -7,6 +7,7 @@
 mod aggregates;
 mod beam;
 mod bounds;
+mod cases;
 mod check;
 mod combined;
 mod composed;
@@ -72,6 +73,7 @@ use flexbody_mechanics::{functions, integrate, lower, model, structures, system}
 use flexbody_optimiser as optimiser;
 
 pub use aggregates::OpenAggregate;
+pub use cases::{Case, Cases};
 pub use composed::{Composed, Composition, Partials};
 use derived::Derived;
 pub use drawing::{BarrierLine, Drawing, Outline};
@@ -229,6 +231,8 @@ pub struct Problem {
     pub composition: Arc<Composition>,
     /// Structures under load cases; then nothing moves, and there are no scenes.
     pub statics: Option<Arc<Statics>>,
+    /// Cases; then what is computed is computed in each, and this problem has no scene of its own.
+    pub cases: Option<Arc<Cases>>,
 }
 
 impl Problem {
@@ -282,7 +286,7 @@ impl Problem {
     /// Limits the memory for the data of a motion that its gradients need \[bytes\]. Other steps
     /// are repeated from checkpoints.
     pub fn limit_memory(&mut self, bytes: usize) {
-        self.simulation.memory = Some(bytes);
+        self.change_all(&|own| own.simulation.memory = Some(bytes));
     }
 
     /// The design in the file.
@@ -298,6 +302,23 @@ impl Problem {
         for (variable, &x) in self.variables.iter_mut().zip(x) {
             variable.start = x.clamp(variable.lower, variable.upper);
         }
+        if let Some(cases) = &mut self.cases {
+            let cases = Arc::make_mut(cases).list.iter_mut();
+            cases.for_each(|case| case.problem.restart(x));
+        }
+    }
+
+    /// Whether it has a scene of bodies of its own: it is neither one of structures nor one of cases.
+    pub fn has_scene(&self) -> bool {
+        self.statics.is_none() && self.cases.is_none()
+    }
+
+    /// Whether its scenes, or those of its cases, are reduced.
+    pub fn is_lowered(&self) -> bool {
+        match &self.cases {
+            Some(cases) => cases.list.iter().any(|case| case.problem.is_lowered()),
+            None => self.lowering.is_some(),
+        }
     }
 
     /// SI unit of the function `index`; empty if that of an expression is not known.
@@ -310,9 +331,13 @@ impl Problem {
                 .unit
                 .clone();
         }
-        match &self.statics {
-            Some(statics) => statics.functions[index].unit().to_owned(),
-            None => self.scene(&self.start()).functions[index].unit(),
+        match (&self.cases, &self.statics) {
+            (Some(cases), _) => {
+                let (case, own) = cases.places[index];
+                cases.list[case].problem.function_unit(own)
+            }
+            (None, Some(statics)) => statics.functions[index].unit().to_owned(),
+            (None, None) => self.scene(&self.start()).functions[index].unit(),
         }
     }
 

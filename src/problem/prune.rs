@@ -7,7 +7,7 @@ use serde_json::{Map, Value, json};
 use std::collections::HashSet;
 
 /// Sections with named entries that are independent of each other.
-const NAMED: [&str; 10] = [
+const NAMED: [&str; 11] = [
     "bodies",
     "joints",
     "loads",
@@ -18,6 +18,7 @@ const NAMED: [&str; 10] = [
     "functions",
     "variables",
     "constraints",
+    "cases",
 ];
 
 /// The parts that were removed from a document.

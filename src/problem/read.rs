@@ -1,6 +1,7 @@
 //! Reads the text of a problem file: a problem, or all of its faults.
 
 use super::aggregates;
+use super::cases::{self, Stated};
 use super::check::check;
 use super::composing::{Composing, strip};
 use super::derived::{Derived, Expressions};
@@ -55,7 +56,7 @@ const TOLERANCE_OF_FLEXIBLE: f64 = 1e-6;
 const TOLERANCE_OF_ELEMENTS: f64 = 1e-5;
 
 /// Name of the objective if the nearest feasible design is sought.
-const NEAREST: &str = "squared distance from the start";
+pub(super) const NEAREST: &str = "squared distance from the start";
 
 /// Reads a problem file.
 pub(super) fn load(path: &Path, overrides: &[Override]) -> Result<Problem, Faults> {
@@ -78,6 +79,23 @@ pub(super) fn parse(written: &str, file: &str, overrides: &[Override]) -> Result
     for change in overrides {
         findings.extend(change.apply(&mut document).err());
     }
+    let of_cases = document.get("cases").is_some().then(|| source.clone());
+    let (problem, stated) = single(document, source, findings, (file, overrides))?;
+    match (stated, of_cases) {
+        (Some(stated), Some(source)) => {
+            cases::complete(problem, stated, &source, (file, overrides))
+        }
+        _ => Ok(problem),
+    }
+}
+
+/// The problem of a document without its cases, and what it states of these, if it has some. `findings` are known already.
+pub(super) fn single(
+    mut document: Value,
+    mut source: Source,
+    mut findings: Vec<Finding>,
+    (file, overrides): (&str, &[Override]),
+) -> Result<(Problem, Option<Stated>), Faults> {
     findings.extend(text::faults(&document));
     let mut original = None;
     if expansion::is_needed(&document) {
@@ -141,7 +159,17 @@ pub(super) fn parse(written: &str, file: &str, overrides: &[Override]) -> Result
         }
         false => String::new(),
     };
+    let stated = Stated::read(&written);
+    if let Some(stated) = &stated {
+        if damage.is_empty() {
+            findings.extend(stated.faults(&written));
+        }
+        stated.prepare(&mut written);
+    }
     findings.extend(check(&written, &damage));
+    if let Some(stated) = &stated {
+        stated.strip(&mut written);
+    }
     let parameters = document["parameters"].as_object().cloned();
     let composing = match Composing::read(&written, (parameters.as_ref(), &source), &damage) {
         Ok(composing) => composing,
@@ -176,6 +204,10 @@ pub(super) fn parse(written: &str, file: &str, overrides: &[Override]) -> Result
     let order = placement_order(&written).expect("a checked document has no circle of places");
     match deserialise(&sound) {
         Ok(mut bound) => {
+            if let Some(stated) = &stated {
+                stated.prepare(&mut bound);
+                stated.strip(&mut bound);
+            }
             strip(&mut bound);
             modal::share(&written, &mut bound);
             surfaces::share(&written, &mut bound);
@@ -197,7 +229,7 @@ pub(super) fn parse(written: &str, file: &str, overrides: &[Override]) -> Result
             if !problem.written.structures.is_empty() {
                 let done = of_structures(&mut problem);
                 return match done.and_then(|()| give_units(&mut problem, &composing, &source)) {
-                    Ok(()) => Ok(problem),
+                    Ok(()) => Ok((problem, stated)),
                     Err(findings) => faults(findings),
                 };
             }
@@ -226,7 +258,7 @@ pub(super) fn parse(written: &str, file: &str, overrides: &[Override]) -> Result
                     match without_inertia(&problem) {
                         Some(finding) => faults(vec![finding]),
                         None => match give_units(&mut problem, &composing, &source) {
-                            Ok(()) => Ok(problem),
+                            Ok(()) => Ok((problem, stated)),
                             Err(findings) => faults(findings),
                         },
                     }
@@ -420,7 +452,7 @@ fn problem(
             upper: constraint.upper.unwrap_or(f64::INFINITY),
         })
         .collect();
-    let hash = Sha256::digest(document.to_string() + content);
+    let hash = hash_of(document.to_string() + content);
     Problem {
         name: written.name.clone(),
         simulation: simulation(written.simulation.as_ref(), usual_tolerance(&written)),
@@ -446,7 +478,7 @@ fn problem(
                 unbounded_below: optimiser.unbounded_below,
             },
         ),
-        hash: hash.iter().map(|byte| format!("{byte:02x}")).collect(),
+        hash,
         document,
         written,
         order,
@@ -457,7 +489,14 @@ fn problem(
         composition: Arc::default(),
         focus: None,
         statics: None,
+        cases: None,
     }
+}
+
+/// SHA-256 of a text, hexadecimal.
+pub(super) fn hash_of(text: String) -> String {
+    let hash = Sha256::digest(text);
+    hash.iter().map(|byte| format!("{byte:02x}")).collect()
 }
 
 /// The tolerance of a file that gives none.

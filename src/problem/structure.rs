@@ -147,6 +147,8 @@ impl<'a> Walker<'a> {
                 None if schema["additionalProperties"].is_object() => {
                     self.value(value, &schema["additionalProperties"], &inner);
                 }
+                // Values of a case, which are checked where they replace those of the file.
+                None if schema["additionalProperties"] == Value::Bool(true) => {}
                 None => {
                     let known = properties.into_iter().flat_map(|map| map.keys());
                     let known = known.map(String::as_str);

@@ -2,6 +2,7 @@
 //! `FLEXBODY_WRITE=1 cargo test --release --test cli gallery` writes it, and simulates what has no picture yet.
 
 use crate::program::{json, optimize, read, scratch};
+use serde_json::Value;
 use std::fmt::Write;
 use std::path::{Path, PathBuf};
 
@@ -42,11 +43,17 @@ const PICTURES: [&str; 4] = ["fit.svg", "motion.svg", "thickness.svg", "deformed
 /// Size of a picture [bytes] from which two instants suffice.
 const LARGE: usize = 600_000;
 
-/// The picture of a problem: of its committed result, or of its start in `docs/gallery`. Path as seen from `docs`.
-fn picture(name: &str) -> Option<String> {
-    let results = PICTURES.map(|own| format!("../results/{name}/{own}"));
+/// The picture of a problem: of its committed result, of its first case there, or of its start in `docs/gallery`. Path as seen
+/// from `docs`.
+fn picture(document: &Value) -> Option<String> {
+    let name = document["name"].as_str().expect("a name");
+    let cases = document["cases"].as_object().into_iter().flatten();
+    let folders = cases.take(1).map(|(case, _)| format!("{name}/{case}"));
+    let folders = std::iter::once(name.to_owned()).chain(folders);
+    let results =
+        folders.flat_map(|folder| PICTURES.map(|own| format!("../results/{folder}/{own}")));
     let start = format!("gallery/{name}.svg");
-    let mut all = results.into_iter().chain([start]);
+    let mut all = results.chain([start]);
     all.find(|path| root().join("docs").join(path).exists())
 }
 
@@ -98,7 +105,7 @@ fn gallery() -> String {
                 true => format!("optimize {folder}/{file}"),
                 false => format!("optimize simulate {folder}/{file} --output results/{name}"),
             };
-            match picture(name) {
+            match picture(&document) {
                 Some(picture) => {
                     let what = match picture.starts_with("..") {
                         true => "start and optimum",
@@ -132,7 +139,7 @@ fn the_gallery_shows_every_problem() {
             for problem in problems(folder) {
                 let document = json(&read(&problem));
                 let name = document["name"].as_str().expect("a name");
-                if picture(name).is_none() {
+                if picture(&document).is_none() {
                     draw(&problem, name);
                 }
             }

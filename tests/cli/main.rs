@@ -2,6 +2,7 @@
 
 mod before_work;
 mod beyond_one_run;
+mod cases;
 mod commands;
 mod gallery;
 mod installation;

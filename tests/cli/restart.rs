@@ -67,6 +67,45 @@ fn a_run_that_ends_at_an_event_is_gone_on_with() {
     }
 }
 
+/// Each case has steps and an event of its own.
+#[test]
+fn a_run_of_cases_is_gone_on_with() {
+    let at = scratch();
+    let until =
+        r#"{"measure": {"rotation": {"body": "handle", "axis": [0, 0, 1]}}, "reaches": -1.2}"#;
+    let problem = changed(at.path(), "hammer.json", |document| {
+        document["simulation"] = json(r#"{"duration": 0.6, "tolerance": 1e-6}"#);
+        let whole = json(&format!(
+            r#"{{"duration": 3, "tolerance": 1e-6, "until": {until}}}"#
+        ));
+        document["cases"] = json("{\"timed\": {}, \"turned\": {\"set\": {}}}");
+        document["cases"]["turned"]["set"]["/simulation"] = whole;
+        let names: Vec<String> = { document["functions"].as_object() }
+            .expect("functions")
+            .keys()
+            .cloned()
+            .collect();
+        let objective = document["objective"].as_object().expect("an objective");
+        let (sense, function) = objective.iter().next().expect("a sense");
+        let (sense, function) = (sense.clone(), function.clone());
+        assert!(
+            names.iter().any(|name| function == name.as_str()),
+            "{function}"
+        );
+        document["functions"]["both"] = json("{}");
+        document["functions"]["both"]["over_cases"] = json("{\"by\": \"mean\"}");
+        document["functions"]["both"]["over_cases"]["function"] = function;
+        document["objective"] = json("{}");
+        document["objective"][sense] = json("\"both\"");
+    });
+    goes_on_after_every_line(&problem, 0, |record| {
+        assert!(
+            record.contains("\"events_of_cases\"") && record.contains("\"cases\""),
+            "{record}"
+        );
+    });
+}
+
 /// A run that was killed before its first evaluation starts again, and its files are removed. A
 /// directory without a run is not changed.
 #[test]

@@ -13,6 +13,7 @@ mod beam_scenes;
 mod beams;
 mod benchmarks;
 mod buckling;
+mod cases;
 mod circles;
 mod committed_problems;
 mod distributed_loads;

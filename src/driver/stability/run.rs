@@ -258,7 +258,7 @@ fn optimisation(
     }
     row.steps = done.end.as_ref().and_then(|end| match end {
         Simulated::Motion(end) => Some(end.at.run.grid.steps()),
-        Simulated::Statics(_) => None,
+        Simulated::Statics(_) | Simulated::Cases(_) => None,
     });
     let found = done.optimum.objective.value;
     let error = (found - optimum).abs() / size;

@@ -123,7 +123,7 @@ impl Checker<'_> {
             Function::VonMises(stress) => self.stress(&at("von_mises"), stress),
             Function::Frequency(_) | Function::LowestFrequency(_) => self.densities("a frequency"),
             // Their names are checked where they are read.
-            Function::Expression(_) => {}
+            Function::Expression(_) | Function::OverCases(_) => {}
             Function::Ks(_)
             | Function::InducedExponential(_)
             | Function::Integral(_)

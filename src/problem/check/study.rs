@@ -27,13 +27,24 @@ impl Checker<'_> {
         self.names("variables", document.variables.keys());
         self.names("constraints", document.constraints.keys());
         self.problem_name();
+        // With cases, values in these have names too, and all are checked with them.
+        let checked = document.cases.is_empty();
         for (name, function) in &document.functions {
+            if matches!(function, Function::OverCases(_))
+                && checked
+                && !self.damage.touches("cases")
+            {
+                let pointer = join(&join("/functions", name), "over_cases");
+                let finding =
+                    Finding::new(pointer, "a function over cases", "\"cases\" in the file");
+                self.fault(finding.of_key());
+            }
             match self.is_static() {
                 true => self.static_function(&join("/functions", name), function),
                 false => self.function(&join("/functions", name), function),
             }
         }
-        for (pointer, of) in references(document) {
+        for (pointer, of) in references(document).into_iter().filter(|_| checked) {
             if let WhichFunction::Named(name) = of {
                 self.function_name(&pointer, name);
             }
@@ -159,7 +170,7 @@ impl Checker<'_> {
 
     fn function(&mut self, pointer: &str, function: &Function) {
         // Their names are checked where they are read.
-        if let Function::Expression(_) = function {
+        if let Function::Expression(_) | Function::OverCases(_) = function {
             return;
         }
         let Some(function) = function.of_motion() else {

@@ -132,6 +132,7 @@ fn of(document: &Document, function: &Written, cuts: usize) -> Asked {
         | Written::Value(_)
         | Written::Clearance(_)
         | Written::Duration
+        | Written::OverCases(_)
         | Written::Expression(_) => {
             unreachable!(
                 "functions of a motion are refused before, and expressions are no functions of structures"

@@ -210,6 +210,7 @@ mod tests {
             design: vec![x],
             found: Found::Values(vec![x * x]),
             event: Some(0.3 + x.abs()),
+            events_of_cases: Vec::new(),
             work: Work {
                 solves: 7,
                 ..Work::default()
@@ -229,8 +230,10 @@ mod tests {
                 kinks: Vec::new(),
                 equal: false,
                 left_out: Vec::new(),
+                cases: Vec::new(),
             }),
             event: None,
+            events_of_cases: Vec::new(),
             work: Work::default(),
         }
     }

@@ -127,6 +127,9 @@ pub struct EvaluationRecord {
     /// Time of the event in the last motion so far, if the scene ends at one \[s\].
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub event: Option<f64>,
+    /// The same by case, of a problem with cases.
+    #[serde(default, skip_serializing_if = "Vec::is_empty")]
+    pub events_of_cases: Vec<Option<f64>>,
     /// Its work.
     #[serde(default, skip_serializing_if = "Work::is_none")]
     pub work: Work,
@@ -227,6 +230,9 @@ pub struct StepsInUse {
     /// Redundant constraint rows that are left out. None if all are imposed.
     #[serde(default, skip_serializing_if = "Vec::is_empty")]
     pub left_out: Vec<RowsLeftOut>,
+    /// Of a problem with cases: those of each.
+    #[serde(default, skip_serializing_if = "Vec::is_empty")]
+    pub cases: Vec<Option<StepsInUse>>,
 }
 
 /// Constraint rows that are left out from a step on.
@@ -254,6 +260,9 @@ impl StepsInUse {
 
     /// What was found and expected, if no motion can have such steps.
     fn fault(&self) -> Option<(String, &'static str)> {
+        if !self.cases.is_empty() {
+            return self.cases.iter().flatten().find_map(Self::fault);
+        }
         if Method::named(&self.method).is_none() {
             let found = format!("the method {:?}", self.method);
             return Some((
@@ -311,7 +320,11 @@ impl EvaluationRecord {
             }
             Found::NoValues(_) | Found::NoGradients(_) => true,
         };
-        if let Some(event) = self.event.filter(|event| event.is_nan() || *event <= 0.0) {
+        let mut events = self
+            .event
+            .iter()
+            .chain(self.events_of_cases.iter().flatten());
+        if let Some(event) = events.find(|event| event.is_nan() || **event <= 0.0) {
             return Some((format!("an event at {event} s"), "a time after the start"));
         }
         if fits && self.design.len() == n {

@@ -1,20 +1,24 @@
 //! A design with the values of its functions: a motion, or structures under load cases.
 
-use super::alike::{Message, grouped};
-use super::evaluate::Evaluated;
-use super::integration::{Integration, Refresh};
-use super::simulate::{Simulation, simulate, simulate_with};
-use super::statics::{StaticDesign, StaticsFailure};
-use super::{composed, error, not_finite, resolved, start, statics};
+mod cases;
+mod check_cases;
+
+use crate::alike::{Message, grouped};
+use crate::evaluate::{Derivative, Evaluated};
 use crate::functions::evaluate::ungated_maximum;
 use crate::functions::instant::Instant;
 use crate::functions::{Bound, Function, Reduction};
 use crate::integrate::{IntegrationFailure, WorkCounts};
+use crate::integration::{Integration, Refresh};
 use crate::math::soft_max::Smoothed;
 use crate::problem::{Asked, Problem};
 use crate::report::optimum::{Aggregate, Integration as IntegrationRecord, Lies};
 use crate::report::with_space;
+use crate::simulate::{Simulation, simulate, simulate_with};
+use crate::statics::{self, StaticDesign, StaticsFailure};
 use crate::structures::functions::{self, Peak};
+use crate::{CheckedDerivative, composed, error, not_finite, resolved, start};
+pub use cases::InCases;
 
 /// A design that was analysed.
 pub enum Analysed {
@@ -22,6 +26,8 @@ pub enum Analysed {
     Motion(Box<Evaluated>),
     /// Structures that do not move.
     Statics(Box<StaticDesign>),
+    /// Several cases.
+    Cases(Box<InCases<Analysed>>),
 }
 
 /// Why a design has no values or no gradients.
@@ -33,6 +39,17 @@ pub enum AnalysisFailure {
     /// The structures.
     #[error(transparent)]
     Statics(#[from] StaticsFailure),
+    /// A case.
+    #[error("in the case \"{case}\": {failure}")]
+    InCase {
+        /// Its name.
+        case: String,
+        /// Why.
+        failure: Box<AnalysisFailure>,
+    },
+    /// One motion was requested of several cases.
+    #[error("the problem has cases: ask for one of them")]
+    SeveralCases,
     /// A motion was requested of structures that do not move.
     #[error("the problem has structures that do not move, so there is no motion to simulate")]
     NoMotion,
@@ -53,6 +70,10 @@ impl Analysed {
         x: &[f64],
         asked: &[usize],
     ) -> Result<(Self, Option<Refresh>), AnalysisFailure> {
+        if let Some(cases) = &problem.cases {
+            let (found, refresh) = InCases::with(integration, (problem, cases), x, asked)?;
+            return Ok((Self::Cases(Box::new(found)), refresh));
+        }
         Ok(match &problem.statics {
             Some(statics) => {
                 let design = StaticDesign::of(problem, statics, x, Some(asked))?;
@@ -70,6 +91,7 @@ impl Analysed {
         match self {
             Self::Motion(at) => &at.x,
             Self::Statics(at) => &at.x,
+            Self::Cases(at) => &at.x,
         }
     }
 
@@ -78,6 +100,7 @@ impl Analysed {
         match self {
             Self::Motion(at) => at.value(f),
             Self::Statics(at) => at.function(f).value,
+            Self::Cases(at) => at.value(f),
         }
     }
 
@@ -86,6 +109,7 @@ impl Analysed {
         match self {
             Self::Motion(at) => at.run.counts,
             Self::Statics(at) => at.counts,
+            Self::Cases(at) => at.counts(),
         }
     }
 
@@ -100,12 +124,10 @@ impl Analysed {
     ) -> Result<(Vec<Vec<f64>>, WorkCounts), AnalysisFailure> {
         Ok(match self {
             Self::Motion(at) => at.gradients(problem, which)?,
+            Self::Cases(at) => at.gradients(which)?,
             Self::Statics(at) => {
                 let (found, counts) = at.derivatives(problem, which)?;
-                let values = |row: Vec<_>| {
-                    row.into_iter()
-                        .map(|d: super::evaluate::Derivative| d.value)
-                };
+                let values = |row: Vec<_>| row.into_iter().map(|d: Derivative| d.value);
                 (
                     found.into_iter().map(|row| values(row).collect()).collect(),
                     counts,
@@ -157,17 +179,19 @@ impl Analysed {
     }
 
     /// Why function f has no derivative by the design here, if so.
-    pub(super) fn no_derivative(&self, problem: &Problem, f: usize) -> Option<String> {
+    pub(crate) fn no_derivative(&self, problem: &Problem, f: usize) -> Option<String> {
         match self {
             Self::Motion(at) => at.no_derivative(problem, f),
             Self::Statics(_) => None,
+            Self::Cases(at) => at.no_derivative(f),
         }
     }
 
     /// The origin of a value that is not finite.
-    pub(super) fn not_finite_value(&self, problem: &Problem, f: usize, value: f64) -> String {
+    pub(crate) fn not_finite_value(&self, problem: &Problem, f: usize, value: f64) -> String {
         match self {
             Self::Motion(at) => not_finite::value(problem, at, f, value),
+            Self::Cases(at) => at.not_finite_value(problem, f, value),
             Self::Statics(at) if problem.composition.gives(f) => {
                 composed::not_finite(problem, f, value, &|g| at.function(g).value)
             }
@@ -191,11 +215,12 @@ impl Analysed {
                 resolved::refusal(problem, &found)
             }
             Self::Statics(_) => None,
+            Self::Cases(at) => at.refused(which),
         }
     }
 
     /// The origin of a derivative that is not finite.
-    pub(super) fn not_finite_derivative(
+    pub(crate) fn not_finite_derivative(
         &self,
         problem: &Problem,
         (f, i): (usize, usize),
@@ -203,7 +228,7 @@ impl Analysed {
     ) -> String {
         match self {
             Self::Motion(at) => not_finite::derivative(problem, at, (f, i), value),
-            Self::Statics(_) => format!(
+            Self::Statics(_) | Self::Cases(_) => format!(
                 "the derivative of the function \"{}\" in the variable {} is {value}",
                 problem.function_names[f],
                 not_finite::variable(problem, i)
@@ -231,6 +256,8 @@ pub enum Simulated {
     Motion(Box<Simulation>),
     /// Structures with all load cases.
     Statics(Box<StaticDesign>),
+    /// Several cases.
+    Cases(Box<InCases<Simulated>>),
 }
 
 impl Simulated {
@@ -239,6 +266,13 @@ impl Simulated {
     /// # Errors
     /// If the analysis fails.
     pub fn of(problem: &Problem, x: &[f64]) -> Result<Self, AnalysisFailure> {
+        if let Some(cases) = &problem.cases {
+            return Ok(Self::Cases(Box::new(InCases::of(
+                None,
+                (problem, cases),
+                x,
+            )?)));
+        }
         Ok(match &problem.statics {
             Some(statics) => Self::Statics(Box::new(StaticDesign::of(problem, statics, x, None)?)),
             None => Self::Motion(Box::new(simulate(problem, x)?)),
@@ -268,6 +302,10 @@ impl Simulated {
         problem: &Problem,
         x: &[f64],
     ) -> Result<Self, AnalysisFailure> {
+        if let Some(cases) = &problem.cases {
+            let found = InCases::of(Some(integration), (problem, cases), x)?;
+            return Ok(Self::Cases(Box::new(found)));
+        }
         match problem.statics {
             Some(_) => Self::of(problem, x),
             None => {
@@ -282,6 +320,7 @@ impl Simulated {
         match self {
             Self::Motion(simulation) => simulation.at.function(f).value,
             Self::Statics(at) => at.function(f).value,
+            Self::Cases(at) => at.value(f),
         }
     }
 
@@ -290,6 +329,7 @@ impl Simulated {
         match self {
             Self::Motion(simulation) => simulation.at.function(f).maximum.map(|m| m.value),
             Self::Statics(at) => at.function(f).peak.map(|peak| peak.ratio),
+            Self::Cases(at) => at.maximum(f),
         }
     }
 
@@ -298,11 +338,12 @@ impl Simulated {
         match self {
             Self::Motion(simulation) => simulation.at.smoothed(f),
             Self::Statics(at) => at.smoothed(f),
+            Self::Cases(at) => at.smoothed(f),
         }
     }
 
     /// What a function stands for, if something else than a maximum over time or points is smoothed.
-    pub(super) fn true_value(&self, f: usize) -> Option<f64> {
+    pub(crate) fn true_value(&self, f: usize) -> Option<f64> {
         match self.maximum(f) {
             None => Some(self.smoothed(f)?.value),
             Some(_) => None,
@@ -311,7 +352,7 @@ impl Simulated {
 
     /// Warnings of functions whose aggregates are far from what they stand for, one of a family; `when` says at which design.
     /// Of a constraint alone, far is what is far in parts of its limits.
-    pub(super) fn far(&self, problem: &Problem, used: &[usize], when: &str) -> Vec<String> {
+    pub(crate) fn far(&self, problem: &Problem, used: &[usize], when: &str) -> Vec<String> {
         let one = |&f: &usize| {
             let Smoothed { value, far } = self.smoothed(f)?;
             let name = &problem.function_names[f];
@@ -341,11 +382,12 @@ impl Simulated {
         Ok(match self {
             Self::Motion(simulation) => error::estimate(problem, &simulation.at, which, gradients)?,
             Self::Statics(at) => statics::error::estimate(problem, at, which, gradients)?,
+            Self::Cases(at) => at.estimate(problem, which, gradients)?,
         })
     }
 
     /// Notes for the user on the result; `used` are the functions of objective and constraints.
-    pub(super) fn warnings(&self, problem: &Problem, used: &[usize]) -> Vec<String> {
+    pub(crate) fn warnings(&self, problem: &Problem, used: &[usize]) -> Vec<String> {
         match self {
             Self::Motion(simulation) => {
                 let doubts = simulation.at.doubts(problem, used.iter().copied());
@@ -355,13 +397,16 @@ impl Simulated {
                 let doubts = statics::error::doubts(problem, at, used);
                 doubts.into_iter().chain(at.large_rotation()).collect()
             }
+            Self::Cases(at) => at.warnings(used),
         }
     }
 
     /// How a motion was integrated.
-    pub(super) fn integration(&self, refreshes: usize) -> Option<IntegrationRecord> {
-        let Self::Motion(end) = self else {
-            return None;
+    pub(crate) fn integration(&self, refreshes: usize) -> Option<IntegrationRecord> {
+        let end = match self {
+            Self::Motion(end) => end,
+            Self::Statics(_) => return None,
+            Self::Cases(at) => return at.integration(refreshes),
         };
         if end.at.is_rest() {
             return None;
@@ -375,7 +420,7 @@ impl Simulated {
     }
 
     /// The aggregated quantity of a function, if it is an aggregate.
-    pub(super) fn aggregate(
+    pub(crate) fn aggregate(
         &self,
         problem: &Problem,
         f: usize,
@@ -418,6 +463,7 @@ impl Simulated {
                     ungated: ungated_maximum(function, &end.at.scene.model, &end.at.run),
                 })
             }
+            Self::Cases(at) => at.aggregate(f, estimates),
             Self::Statics(end) => {
                 let peak = end.function(f).peak?;
                 let statics = problem.statics.as_ref()?;
@@ -445,13 +491,13 @@ impl Simulated {
 ///
 /// # Errors
 /// If the analysis fails.
-pub fn check(
-    problem: &Problem,
-    x: &[f64],
-) -> Result<Vec<super::CheckedDerivative>, AnalysisFailure> {
+pub fn check(problem: &Problem, x: &[f64]) -> Result<Vec<CheckedDerivative>, AnalysisFailure> {
+    if let Some(cases) = &problem.cases {
+        return check_cases::check((problem, cases), x);
+    }
     Ok(match Simulated::of_statics(problem, x)? {
         Some(at) => statics::check::check(problem, &at)?,
-        None => super::check::check(problem, x)?,
+        None => crate::check::check(problem, x)?,
     })
 }
 
@@ -467,7 +513,14 @@ pub fn place(cases: &[String], peak: &Peak) -> String {
 }
 
 /// Notes for the user on the start at the design `x`, one sentence each.
-pub(super) fn notes_of_start(problem: &Problem, x: &[f64]) -> Vec<String> {
+pub(crate) fn notes_of_start(problem: &Problem, x: &[f64]) -> Vec<String> {
+    if let Some(cases) = &problem.cases {
+        let notes = cases.list.iter().flat_map(|case| {
+            let own = notes_of_start(&case.problem, x).into_iter();
+            own.map(|note| format!("in the case \"{}\": {note}", case.name))
+        });
+        return notes.collect();
+    }
     match problem.statics {
         Some(_) => Vec::new(),
         None => start::notes(problem, x),

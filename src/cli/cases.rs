@@ -1,0 +1,144 @@
+//! `optimize simulate` of a problem with cases.
+
+use super::aggregates::{add_smoothed, told};
+use super::arguments::Job;
+use super::{DONE, Failure, motion, print, shown, statics, tell, write_report};
+use crate::driver::Simulated;
+use crate::driver::analysed::InCases;
+use crate::driver::ends::Ends;
+use crate::figures::tables::ReactionAxes;
+use crate::problem::Problem;
+use crate::report::{prepare_directory, with_space};
+use serde_json::{Map, Value, json};
+use std::fmt::Write;
+
+/// Analyses all cases of a problem's start. The directory for the results is held by the caller.
+pub(super) fn simulate(
+    job: &Job,
+    problem: &Problem,
+    json: bool,
+    axes: ReactionAxes,
+) -> Result<u8, Failure> {
+    let found = Simulated::of(problem, &problem.start()).map_err(Failure::numerical)?;
+    let Simulated::Cases(all) = &found else {
+        return Err(Failure::numerical("a problem without cases"));
+    };
+    if json {
+        let value = as_json(job, problem, all)?;
+        let text = serde_json::to_string_pretty(&value).map_err(Failure::numerical)?;
+        print(&(text + "\n"))?;
+    } else {
+        if !job.quiet {
+            print(&summary(problem, all))?;
+        }
+        if job.error {
+            print(&motion::errors(problem, &found)?)?;
+        }
+    }
+    if let Some(directory) = &job.output {
+        for (case, at) in all.each() {
+            let own = directory.join(&case.name);
+            let _held = prepare_directory(&own)?;
+            match at {
+                Simulated::Motion(at) => {
+                    motion::write_files(job, &own, (&case.problem, at), axes)?;
+                }
+                Simulated::Statics(at) => statics::write_files(job, &own, &case.problem, at)?,
+                Simulated::Cases(_) => {}
+            }
+        }
+        if job.report {
+            write_report(
+                directory,
+                problem,
+                summary(problem, all),
+                &Ends::of(&found),
+                None,
+            )?;
+        }
+        if !job.quiet {
+            tell(&format!("results in {}\n", shown(directory)));
+        }
+    }
+    let names = problem.function_names.iter().enumerate();
+    let lost = names.filter(|(f, _)| !all.value(*f).is_finite());
+    let lost: Vec<String> = lost.map(|(_, name)| format!("\"{name}\"")).collect();
+    match lost.is_empty() {
+        true => Ok(DONE),
+        false => {
+            let what = format!("{}: not finite: {}", problem.name, lost.join(", "));
+            Err(Failure::numerical(what))
+        }
+    }
+}
+
+/// Each case, then the functions over cases.
+fn summary(problem: &Problem, all: &InCases<Simulated>) -> String {
+    let mut text = String::new();
+    for (case, at) in all.each() {
+        text += &match at {
+            Simulated::Motion(at) => motion::summary(&case.problem, at),
+            Simulated::Statics(at) => statics::summary(&case.problem, at),
+            Simulated::Cases(_) => String::new(),
+        };
+    }
+    let names = || {
+        problem
+            .function_names
+            .iter()
+            .enumerate()
+            .skip(problem.composition.first)
+    };
+    let width = names().map(|(_, name)| name.chars().count()).max();
+    let Some(width) = width else { return text };
+    let _ = writeln!(text, "{}: {} cases", problem.name, all.cases.list.len());
+    for (f, name) in names() {
+        let unit = with_space(Some(&problem.function_unit(f)));
+        let _ = write!(text, "  {name:width$}  {:>16.9e}{unit}", all.value(f));
+        text += &told(all.smoothed(f), false);
+        text.push('\n');
+    }
+    text
+}
+
+/// Each case as by itself, and all functions.
+fn as_json(job: &Job, problem: &Problem, all: &InCases<Simulated>) -> Result<Value, Failure> {
+    let mut cases = Map::new();
+    for (case, at) in all.each() {
+        let own = match at {
+            Simulated::Motion(at) => motion::as_json(&case.problem, at, job.error)?,
+            Simulated::Statics(at) => statics::as_json(&case.problem, at, None),
+            Simulated::Cases(_) => Value::Null,
+        };
+        cases.insert(case.name.clone(), own);
+    }
+    let which: Vec<usize> = (0..problem.function_names.len()).collect();
+    let errors = match job.error {
+        true => Some(
+            all.estimate(problem, &which, true)
+                .map_err(Failure::numerical)?,
+        ),
+        false => None,
+    };
+    let mut functions = Map::new();
+    for (f, name) in problem.function_names.iter().enumerate() {
+        let mut own = json!({"value": all.value(f), "unit": problem.function_unit(f)});
+        if let Some(largest) = all.maximum(f) {
+            own["true_maximum"] = json!({"value": largest});
+        }
+        if let Some(smoothed) = all.smoothed(f) {
+            add_smoothed(&mut own, &smoothed, all.maximum(f).is_some());
+        }
+        if let Some(errors) = &errors {
+            own["error"] = json!(errors[f].value.error);
+            let gradient = problem.variables.iter().zip(&errors[f].gradient);
+            let gradient = gradient.map(|(variable, derivative)| {
+                let both = json!({"value": derivative.value, "error": derivative.error});
+                (variable.name.clone(), both)
+            });
+            own["gradient"] = Value::Object(gradient.collect());
+        }
+        functions.insert(name.clone(), own);
+    }
+    Ok(json!({"name": problem.name, "cases": cases, "functions": functions}))
+}

@@ -1,0 +1,270 @@
+//! Cases: analyses of one machine with some values of its file replaced.
+//!
+//! A case is a problem of its own: the file with the values of the case, and the functions of the machine that are wanted
+//! there. The problem of all cases has the functions of each, "FUNCTION in CASE", in the order of cases, then those that
+//! expressions give: functions over cases are expressions of them. So values and derivatives follow from those of the cases
+//! by [`Composition`](super::Composition).
+
+mod stated;
+
+pub(super) use stated::Stated;
+
+use super::composing::Composing;
+use super::fault::Faults;
+use super::finding::Finding;
+use super::overrides::Override;
+use super::pointer::join;
+use super::read::{self, NEAREST};
+use super::source::Source;
+use super::{Constraint, Objective, Problem, Sense};
+use crate::schema::cases::Case as WrittenCase;
+use crate::schema::functions::Function;
+use crate::schema::{self, Analysis};
+use serde_json::{Value, json};
+use std::collections::HashMap;
+use std::sync::Arc;
+
+/// Name of the value of a function in a case, and of what belongs to it.
+pub(super) fn value_in_case(function: &str, case: &str) -> String {
+    format!("{function} in {case}")
+}
+
+/// A case.
+#[derive(Clone, Debug)]
+pub struct Case {
+    /// Its name.
+    pub name: String,
+    /// The machine with its values. It has the variables of all cases, no objective and no constraints.
+    pub problem: Problem,
+}
+
+/// The cases of a problem.
+#[derive(Clone, Debug)]
+pub struct Cases {
+    /// In the order of the file.
+    pub list: Vec<Case>,
+    /// By function "FUNCTION in CASE" of the problem: the case, and the function of its problem.
+    pub places: Vec<(usize, usize)>,
+}
+
+impl Cases {
+    /// By case: the functions of its problem that the functions `which` of all cases need. Sorted, each once.
+    pub fn wanted(&self, which: &[usize]) -> Vec<Vec<usize>> {
+        let mut wanted = vec![Vec::new(); self.list.len()];
+        for &(case, function) in which.iter().filter_map(|&f| self.places.get(f)) {
+            wanted[case].push(function);
+        }
+        for own in &mut wanted {
+            own.sort_unstable();
+            own.dedup();
+        }
+        wanted
+    }
+
+    /// The function of all cases that is function `f` of the problem of a case.
+    pub fn number(&self, case: usize, f: usize) -> Option<usize> {
+        self.places.iter().position(|own| *own == (case, f))
+    }
+}
+
+impl Problem {
+    /// The case of this name.
+    pub fn case(&self, name: &str) -> Option<&Problem> {
+        let cases = self.cases.as_ref()?;
+        let own = cases.list.iter().find(|case| case.name == name)?;
+        Some(&own.problem)
+    }
+
+    /// Names of its cases; empty if it has none.
+    pub fn case_names(&self) -> Vec<&str> {
+        let cases = self.cases.iter().flat_map(|cases| &cases.list);
+        cases.map(|case| case.name.as_str()).collect()
+    }
+
+    /// Changes settings of the problem and of each case.
+    pub fn change_all(&mut self, change: &dyn Fn(&mut Problem)) {
+        change(self);
+        if let Some(cases) = &mut self.cases {
+            let cases = Arc::make_mut(cases);
+            cases
+                .list
+                .iter_mut()
+                .for_each(|case| change(&mut case.problem));
+        }
+    }
+}
+
+/// The problem of all cases; `base` is that of the file without them, `source` the text and the places of its entries.
+///
+/// # Errors
+/// The faults of a case, or of functions over cases.
+pub(super) fn complete(
+    mut base: Problem,
+    stated: Stated,
+    source: &Source,
+    (file, overrides): (&str, &[Override]),
+) -> Result<Problem, Faults> {
+    let mut list = Vec::new();
+    for (name, case) in stated.cases() {
+        let found = of_case(&base, &stated, (name, case), source, (file, overrides));
+        let problem = found.map_err(|faults| {
+            let sets: Vec<String> = case.set.keys().cloned().collect();
+            faults.in_case(name, &sets, (file, source))
+        })?;
+        list.push(Case {
+            name: name.clone(),
+            problem,
+        });
+    }
+    let mut places = Vec::new();
+    let mut written = base.written.clone();
+    written.functions.clear();
+    let mut units = HashMap::new();
+    for (c, case) in list.iter().enumerate() {
+        for (f, name) in case.problem.function_names.iter().enumerate() {
+            let name = value_in_case(name, &case.name);
+            units.insert(name.clone(), case.problem.function_unit(f));
+            // Expressions of a case are functions like others here.
+            let own = case
+                .problem
+                .written
+                .functions
+                .get(&case.problem.function_names[f]);
+            let own = own.cloned().unwrap_or(Function::Duration);
+            written.functions.insert(name, own);
+            places.push((c, f));
+        }
+    }
+    stated.state(&mut written, &list);
+    let parameters = base.document["parameters"].as_object().cloned();
+    let located = |findings| Faults::locate(findings, file, source, overrides);
+    let composing = Composing::read(&written, (parameters.as_ref(), source), &Default::default());
+    let composing = composing.map_err(located)?;
+    let first = places.len();
+    base.function_names = written.functions.keys().cloned().collect();
+    base.function_names.truncate(first);
+    base.function_names.extend(composing.names().cloned());
+    let names = (&base.function_names[..], first);
+    let mut composition = composing.composition(names, parameters.as_ref(), &base.derived);
+    let known = |name: &str| units.get(name).cloned();
+    let units = composing.units(known, source).map_err(located)?;
+    for (own, unit) in composition.list.iter_mut().zip(units) {
+        own.unit = unit;
+    }
+    let number = |of: &schema::functions::WhichFunction| {
+        let name = composing.name(of);
+        let place = base.function_names.iter().position(|own| own == name);
+        place.expect("names are checked before")
+    };
+    base.objective = written.objective.as_ref().map(|own| match own {
+        schema::Objective::Minimise(of) => Objective {
+            function: number(of),
+            sense: Sense::Minimise,
+        },
+        schema::Objective::Maximise(of) => Objective {
+            function: number(of),
+            sense: Sense::Maximise,
+        },
+    });
+    base.constraints = (written.constraints.iter())
+        .map(|(name, own)| Constraint {
+            name: name.clone(),
+            function: number(&own.function),
+            lower: own.lower.unwrap_or(f64::NEG_INFINITY),
+            upper: own.upper.unwrap_or(f64::INFINITY),
+        })
+        .collect();
+    for own in &base.constraints {
+        if let Some(&(case, function)) = places.get(own.function) {
+            // Its pictures show its limits.
+            let own = Constraint {
+                function,
+                ..own.clone()
+            };
+            list[case].problem.constraints.push(own);
+        }
+    }
+    if base.objective.is_none() && !base.constraints.is_empty() && !base.variables.is_empty() {
+        let mut name = NEAREST.to_owned();
+        while base.function_names.contains(&name) {
+            name.push('\'');
+        }
+        base.objective = Some(Objective {
+            function: base.function_names.len(),
+            sense: Sense::Minimise,
+        });
+        base.function_names.push(name);
+        composition
+            .list
+            .push(super::composed::distance_from_start(&base.variables));
+        base.nearest_to = Some(base.start());
+    }
+    base.composition = Arc::new(composition);
+    base.hash = read::hash_of(
+        list.iter()
+            .fold(base.hash.clone(), |all, case| all + &case.problem.hash),
+    );
+    (base.statics, base.lowering) = (None, None);
+    base.cases = Some(Arc::new(Cases { list, places }));
+    Ok(base)
+}
+
+/// The problem of a case.
+fn of_case(
+    base: &Problem,
+    stated: &Stated,
+    (name, case): (&String, &WrittenCase),
+    source: &Source,
+    (file, overrides): (&str, &[Override]),
+) -> Result<Problem, Faults> {
+    let located = |finding| Faults::locate(vec![finding], file, source, overrides);
+    let mut document = base.document.clone();
+    stated.keep(&mut document, name);
+    change(&mut document, (name, case)).map_err(located)?;
+    document["name"] = Value::from(value_in_case(&base.name, name));
+    let found = read::single(document, source.clone(), Vec::new(), (file, overrides))?.0;
+    let names = |problem: &Problem| -> Vec<String> {
+        problem
+            .variables
+            .iter()
+            .map(|own| own.name.clone())
+            .collect()
+    };
+    if names(&found) != names(base) {
+        let expected = "the same design variables as without the case";
+        let pointer = join("/cases", name);
+        let finding = Finding::new(pointer, "a set of other thicknesses or sections", expected);
+        return Err(located(finding.of_key()));
+    }
+    Ok(found)
+}
+
+/// Replaces the values of a document by those of a case.
+fn change(document: &mut Value, (name, case): (&str, &WrittenCase)) -> Result<(), Finding> {
+    if let Some(analysis) = case.analysis {
+        document["analysis"] = match analysis {
+            Analysis::Motion => json!("motion"),
+            Analysis::Rest => json!("rest"),
+        };
+        if analysis == Analysis::Rest
+            && let Value::Object(entries) = &mut *document
+        {
+            // They belong to the motions of other cases.
+            for key in ["simulation", "start", "initial_velocity"] {
+                entries.shift_remove(key);
+            }
+        }
+    }
+    for (path, value) in &case.set {
+        let change = Override {
+            path: path.clone(),
+            value: value.clone(),
+        };
+        change.apply(document).map_err(|finding| Finding {
+            pointer: join(&join(&join("/cases", name), "set"), path),
+            found: format!("{} ({path})", finding.found),
+            ..finding
+        })?;
+    }
+    Ok(())
+}
