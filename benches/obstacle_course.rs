@@ -1,4 +1,5 @@
-//! Convergence of the obstacle course: a table on the output, and `docs/obstacle_course.svg`.
+//! Convergence of the obstacle course with elements of nine and of four nodes: a table of each on the output, and
+//! `docs/obstacle_course.svg` of nine nodes.
 //!
 //! `cargo bench --bench obstacle_course`
 
@@ -10,6 +11,7 @@ mod course;
 use course::{
     hemisphere, loss_by_distortion, pinched_cylinder, scordelis_lo, skew_plate, twisted_beam,
 };
+use flexbody::structures::shell::ShellKind;
 
 /// A problem: its name, its colour, and (n, displacement by the published one) from mesh to mesh.
 struct Series {
@@ -104,57 +106,72 @@ fn picture(all: &[Series]) -> String {
     text + "</svg>\n"
 }
 
-fn main() {
-    let (few, many) = ([2, 4, 8, 16, 32], [4, 8, 16, 32, 64]);
-    let all = [
-        series("Scordelis-Lo roof", "#4477aa", &few, &scordelis_lo),
-        series(
-            "pinched cylinder",
-            "#ee6677",
-            &[4, 8, 16, 32],
-            &pinched_cylinder,
-        ),
-        series("pinched hemisphere", "#228833", &few, &hemisphere),
+/// The problems with elements of this kind. Meshes of four nodes have twice as many elements along a side.
+fn course(kind: ShellKind) -> Vec<Series> {
+    let times = 2 / kind.order();
+    let sizes = |sizes: &[usize]| -> Vec<usize> { sizes.iter().map(|n| n * times).collect() };
+    let (few, many) = (sizes(&[2, 4, 8, 16, 32]), sizes(&[4, 8, 16, 32, 64]));
+    let beam = sizes(&[1, 2, 4, 8]);
+    vec![
+        series("Scordelis-Lo roof", "#4477aa", &few, &|n| {
+            scordelis_lo(kind, n)
+        }),
+        series("pinched cylinder", "#ee6677", &few[1..], &|n| {
+            pinched_cylinder(kind, n)
+        }),
+        series("pinched hemisphere", "#228833", &few, &|n| {
+            hemisphere(kind, n)
+        }),
         series("skew plate, t/L = 1e-2", "#ccbb44", &many, &|n| {
-            skew_plate(n, 1e-2)
+            skew_plate(kind, n, 1e-2)
         }),
         series("skew plate, t/L = 1e-3", "#66ccee", &many, &|n| {
-            skew_plate(n, 1e-3)
+            skew_plate(kind, n, 1e-3)
         }),
-        series(
-            "twisted beam, along the width",
-            "#aa3377",
-            &[1, 2, 4, 8],
-            &|n| twisted_beam(n)[0],
-        ),
+        series("twisted beam, along the width", "#aa3377", &beam, &|n| {
+            twisted_beam(kind, n)[0]
+        }),
         series(
             "twisted beam, along the thickness",
             "#888888",
-            &[1, 2, 4, 8],
-            &|n| twisted_beam(n)[1],
+            &beam,
+            &|n| twisted_beam(kind, n)[1],
         ),
-    ];
-    println!("displacement by the published one; n elements along a side");
-    for series in &all {
-        let cells: Vec<String> = series
-            .points
-            .iter()
-            .map(|(n, ratio)| format!("{n}: {ratio:.5}"))
-            .collect();
-        println!("{:<34} {}", series.name, cells.join("  "));
+    ]
+}
+
+fn main() {
+    for kind in [ShellKind::Mitc9, ShellKind::Mitc4] {
+        let all = course(kind);
+        println!("{kind:?}: displacement by the published one; n elements along a side");
+        for series in &all {
+            let cells: Vec<String> = series
+                .points
+                .iter()
+                .map(|(n, ratio)| format!("{n}: {ratio:.5}"))
+                .collect();
+            println!("{:<34} {}", series.name, cells.join("  "));
+        }
+        println!(
+            "part of the deflection that distorted elements take from a strip; n elements along a side"
+        );
+        for slenderness in [1e-2, 1e-3, 1e-4, 1e-5] {
+            let cells = [6, 12, 24].map(|n| {
+                let loss = 100.0 * loss_by_distortion(kind, n, slenderness);
+                format!("{n}: {loss:.3} %")
+            });
+            println!("t/L = {slenderness:<28e} {}", cells.join("  "));
+        }
+        if kind == ShellKind::Mitc9 {
+            write(&all);
+        }
     }
-    println!(
-        "part of the deflection that distorted elements take from a strip; n elements along a side"
-    );
-    for slenderness in [1e-2, 1e-3, 1e-4, 1e-5] {
-        let cells = [6, 12, 24].map(|n| {
-            let loss = 100.0 * loss_by_distortion(n, slenderness);
-            format!("{n}: {loss:.3} %")
-        });
-        println!("t/L = {slenderness:<28e} {}", cells.join("  "));
-    }
+}
+
+/// Writes the picture.
+fn write(all: &[Series]) {
     let path = concat!(env!("CARGO_MANIFEST_DIR"), "/docs/obstacle_course.svg");
-    match std::fs::write(path, picture(&all)) {
+    match std::fs::write(path, picture(all)) {
         Ok(()) => println!("docs/obstacle_course.svg is written"),
         Err(error) => println!("{path}: {error}"),
     }

@@ -46,6 +46,7 @@ __all__ = [
     "Mesh",
     "Member",
     "LengthUnit",
+    "ShellElement",
     "Thickness",
     "VariedThickness",
     "Per",
@@ -634,6 +635,9 @@ BeamStrain: TypeAlias = Literal["von_karman", "linear"]
 LengthUnit: TypeAlias = Literal["m", "cm", "mm", "inch"]
 """A unit of length."""
 
+ShellElement: TypeAlias = Literal["mitc9", "mitc4"]
+"""Elements of shells."""
+
 Thickness: TypeAlias = Union[Real, VariedThickness]
 """Thickness of shells."""
 
@@ -1023,6 +1027,7 @@ def structure(
     mesh: Mesh,
     material: str,
     description: str | None = None,
+    element: ShellElement | None = None,
     at: Vector | None = None,
     thickness: Thickness | None = None,
     section: StructureSection | None = None,
@@ -1040,11 +1045,15 @@ def structure(
     Parameters
     ----------
     mesh : one of `meshes`
-        The mesh, by a generator.
+        The mesh, by a generator or from a file.
     material : text
         Name of the material.
     description : text, optional
         Remark for readers of the file.
+    element : "mitc9" or "mitc4", optional
+        The element of shells, default mitc9. Numbers of elements count these.
+        "mitc9": Nine nodes: MITC9 of Bucalem and Bathe (1993).
+        "mitc4": Four nodes: MITC4 of Dvorkin and Bathe (1984). Each costs less, and more of them are needed.
     at : numbers, shape (3,) [m], optional
         Origin of the mesh, default [0, 0, 0].
     thickness : number above 0 [m] or `varied_thickness(…)`, optional
@@ -4668,6 +4677,7 @@ class MachineKeys(Document):
         mesh: Mesh,
         material: str,
         description: str | None = None,
+        element: ShellElement | None = None,
         at: Vector | None = None,
         thickness: Thickness | None = None,
         section: StructureSection | None = None,
@@ -4689,11 +4699,15 @@ class MachineKeys(Document):
         name : text
             Its name among the `structures`.
         mesh : one of `meshes`
-            The mesh, by a generator.
+            The mesh, by a generator or from a file.
         material : text
             Name of the material.
         description : text, optional
             Remark for readers of the file.
+        element : "mitc9" or "mitc4", optional
+            The element of shells, default mitc9. Numbers of elements count these.
+            "mitc9": Nine nodes: MITC9 of Bucalem and Bathe (1993).
+            "mitc4": Four nodes: MITC4 of Dvorkin and Bathe (1984). Each costs less, and more of them are needed.
         at : numbers, shape (3,) [m], optional
             Origin of the mesh, default [0, 0, 0].
         thickness : number above 0 [m] or `varied_thickness(…)`, optional

@@ -5,6 +5,7 @@ use crate::length_unit::LengthUnit;
 use crate::names::Names;
 use crate::quantity::{Quantity, Vector};
 use flexbody_mathematics::math::Vec3;
+use flexbody_mechanics::structures::shell::ShellKind;
 use indexmap::IndexMap;
 use schemars::JsonSchema;
 use serde::Deserialize;
@@ -17,8 +18,10 @@ pub struct Structure {
     /// Remark for readers of the file.
     #[serde(rename = "description")]
     pub _description: Option<String>,
-    /// The mesh, by a generator.
+    /// The mesh, by a generator or from a file.
     pub mesh: Mesh,
+    /// The element of shells, default mitc9. Numbers of elements count these.
+    pub element: Option<ShellElement>,
     /// Name of the material.
     pub material: String,
     /// Origin of the mesh, default [0, 0, 0].
@@ -51,6 +54,17 @@ pub struct Structure {
     pub masses: IndexMap<String, Mass>,
     /// Damping, which only a motion has: a structure that does not move has none.
     pub damping: Option<Damping>,
+}
+
+/// Elements of shells.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Deserialize, JsonSchema)]
+#[serde(rename_all = "snake_case")]
+pub enum ShellElement {
+    /// Nine nodes: MITC9 of Bucalem and Bathe (1993).
+    #[default]
+    Mitc9,
+    /// Four nodes: MITC4 of Dvorkin and Bathe (1984). Each costs less, and more of them are needed.
+    Mitc4,
 }
 
 /// A generator of a mesh. x runs along the first direction of a panel, y along the second. A panel names
@@ -194,6 +208,16 @@ pub struct ReadMesh {
     pub mesh: flexbody_mechanics::structures::mesh::Mesh,
     /// Places of the nodes \[m\].
     pub nodes: Vec<Vec3<f64>>,
+}
+
+impl Structure {
+    /// The kind of its shells.
+    pub fn shell_kind(&self) -> ShellKind {
+        match self.element.unwrap_or_default() {
+            ShellElement::Mitc9 => ShellKind::Mitc9,
+            ShellElement::Mitc4 => ShellKind::Mitc4,
+        }
+    }
 }
 
 impl Mesh {

@@ -2,12 +2,24 @@
 
 use crate::model::finite::ElementMesh;
 use crate::problem::Outline;
+use crate::structures::shell::{ShellKind, ShellNodes};
 
-/// The nodes, or Gauss points, at the corners of the quarters of an element.
-pub(super) const QUARTERS: [[usize; 4]; 4] =
-    [[0, 1, 4, 3], [1, 2, 5, 4], [3, 4, 7, 6], [4, 5, 8, 7]];
+/// The nodes, or Gauss points, at the corners of the parts of an element: four quarters of nine nodes, or one.
+pub(super) fn quarters(kind: ShellKind) -> &'static [[usize; 4]] {
+    match kind {
+        ShellKind::Mitc9 => &[[0, 1, 4, 3], [1, 2, 5, 4], [3, 4, 7, 6], [4, 5, 8, 7]],
+        ShellKind::Mitc4 => &[[0, 1, 3, 2]],
+    }
+}
+
 /// The nodes at its corners.
-pub(super) const WHOLE: [usize; 4] = [0, 2, 8, 6];
+pub(super) fn whole(kind: ShellKind) -> &'static [usize; 4] {
+    match kind {
+        ShellKind::Mitc9 => &[0, 2, 8, 6],
+        ShellKind::Mitc4 => &[0, 1, 3, 2],
+    }
+}
+
 /// Numbers of a rigid body at an instant.
 pub(super) const OF_BODY: usize = 9;
 /// Numbers of the two sides of a section at an instant.
@@ -75,17 +87,17 @@ impl Detail {
     }
 
     /// The corners of the faces of a shell, four or one, among its nodes.
-    pub(super) fn corners(&self) -> &'static [[usize; 4]] {
+    pub(super) fn corners(&self, kind: ShellKind) -> &'static [[usize; 4]] {
         match self.is_thinned() {
-            true => &[WHOLE],
-            false => &QUARTERS,
+            true => std::slice::from_ref(whole(kind)),
+            false => quarters(kind),
         }
     }
 
     /// The faces of shells by their nodes.
     pub(super) fn faces(&self, mesh: &ElementMesh) -> Vec<Vec<usize>> {
-        let of_element = |nodes: &[usize; 9]| -> Vec<Vec<usize>> {
-            let each = self.corners().iter();
+        let of_element = |nodes: &ShellNodes| -> Vec<Vec<usize>> {
+            let each = self.corners(ShellKind::of(nodes)).iter();
             each.map(|own| own.map(|local| nodes[local]).to_vec())
                 .collect()
         };

@@ -1,6 +1,6 @@
 //! Shapes of bodies on a page: rigid ones by their poses, those that deform as meshes.
 
-use super::detail::{Detail, OF_BODY, OF_POINTS, QUARTERS};
+use super::detail::{Detail, OF_BODY, OF_POINTS, quarters};
 use super::elastic_figures::{between, displaced, elastic, has_stress};
 use super::shells;
 use crate::driver::Simulation;
@@ -154,12 +154,17 @@ fn of_shells(
         let at = Snapshot::of(model, run, *k);
         let q = shells::unknowns(model, body, elastic(model, &at, body));
         let mut all = Vec::new();
-        for stress in shells::stresses(finite, &q) {
+        for (element, stress) in finite
+            .mesh
+            .elements
+            .iter()
+            .zip(shells::stresses(finite, &q))
+        {
             if detail.is_thinned() {
                 all.push(mean(&stress));
                 continue;
             }
-            for corners in QUARTERS {
+            for corners in quarters(element.kind()) {
                 all.push(mean(&corners.map(|g| stress[g])));
             }
         }
@@ -189,12 +194,11 @@ pub(super) fn thickness(
     };
     let first = &frames[..frames.len().min(1)];
     let (faces, places) = moving_faces(simulation, body, &line.mesh, (first, detail));
-    let of_element = detail.corners().len();
-    let shells = of_element * line.thickness.len();
-    let each = line
-        .thickness
-        .iter()
-        .flat_map(|h| std::iter::repeat_n(rounded(1e3 * h), of_element));
+    let elements = line.mesh.elements.iter();
+    let faces_of = elements.map(|element| detail.corners(element.kind()).len());
+    let shells = faces_of.clone().sum();
+    let each = (line.thickness.iter().zip(faces_of))
+        .flat_map(|(h, count)| std::iter::repeat_n(rounded(1e3 * h), count));
     Some(Shape::Mesh {
         faces: faces.into_iter().take(shells).collect(),
         places,

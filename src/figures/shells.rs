@@ -1,11 +1,12 @@
 //! Shells in motion: where their nodes are, their stresses, and coloured parts of their surface.
 
-use super::detail::{Detail, QUARTERS, WHOLE};
+use super::detail::{Detail, quarters, whole};
 use crate::math::Vec3;
 use crate::model::Model;
 use crate::model::finite::{ElementMesh, FiniteElements};
 use crate::plots::Patch;
 use crate::problem::{BeamFibres, Drawing, larger};
+use crate::structures::shell::{PerNode, ShellKind};
 use crate::system::finite::stress_ratios;
 
 /// Bodies with at most this number of elements are drawn in four parts an element, others in one.
@@ -41,10 +42,12 @@ pub(super) fn places(mesh: &ElementMesh, q: &[f64]) -> Vec<Vec3<f64>> {
 pub(super) fn stresses<'a>(
     finite: &'a FiniteElements<f64>,
     q: &'a [f64],
-) -> impl Iterator<Item = [f64; 9]> + 'a {
+) -> impl Iterator<Item = PerNode<f64>> + 'a {
     finite.mesh.elements.iter().enumerate().map(|(i, element)| {
         let faces = stress_ratios(finite, q, &[i]);
-        std::array::from_fn(|g| element.yield_stress * faces[2 * g].max(faces[2 * g + 1]))
+        PerNode::from_fn(faces.len() / 2, |g| {
+            element.yield_stress * faces[2 * g].max(faces[2 * g + 1])
+        })
     })
 }
 
@@ -57,7 +60,6 @@ pub(super) fn patches(
     place: impl Fn(&Vec3<f64>) -> Vec3<f64>,
     (drawing, detail): (&Drawing, &Detail),
 ) -> Vec<Patch> {
-    const OUTLINE: [usize; 8] = [0, 1, 2, 5, 8, 7, 6, 3];
     let nodes: Vec<Vec3<f64>> = places(&finite.mesh, q).iter().map(place).collect();
     let mean = |values: &[f64]| values.iter().sum::<f64>() / values.len() as f64;
     let sight = drawing.sight();
@@ -68,15 +70,24 @@ pub(super) fn patches(
         all.push((depth / corners.len() as f64, Patch { corners, value }));
     };
     for (element, stress) in finite.mesh.elements.iter().zip(stresses(finite, q)) {
+        let kind = element.kind();
         if detail.is_thinned() {
-            add(&WHOLE.map(|local| element.nodes[local]), mean(&stress));
+            add(
+                &whole(kind).map(|local| element.nodes[local]),
+                mean(&stress),
+            );
             continue;
         }
         if finite.mesh.elements.len() > IN_PARTS {
-            add(&OUTLINE.map(|local| element.nodes[local]), mean(&stress));
+            let line: &[usize] = match kind {
+                ShellKind::Mitc9 => &[0, 1, 2, 5, 8, 7, 6, 3],
+                ShellKind::Mitc4 => whole(kind),
+            };
+            let line: Vec<usize> = line.iter().map(|&local| element.nodes[local]).collect();
+            add(&line, mean(&stress));
             continue;
         }
-        for corners in QUARTERS {
+        for corners in quarters(kind) {
             add(
                 &corners.map(|local| element.nodes[local]),
                 mean(&corners.map(|g| stress[g])),

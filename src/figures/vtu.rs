@@ -1,15 +1,24 @@
 //! Fields of structures, at rest and in motion, as VTK files for unstructured grids (`.vtu`), which ParaView and meshio read.
 //!
-//! Nine-node shells are cells of type 28 (biquadratic quadrilateral): corners, middles of edges, centre.
+//! Nine-node shells are cells of type 28 (biquadratic quadrilateral): corners, middles of edges, centre. Four-node
+//! shells are cells of type 9 (quadrilateral).
 //! Three-node beams are cells of type 21 (quadratic edge): ends, middle.
 
+use crate::structures::shell::{ShellKind, ShellNodes};
 use std::fmt::Write;
 
-/// Local node of a shell for each node of a biquadratic quadrilateral.
-const OF_SHELL: [usize; 9] = [0, 2, 8, 6, 1, 5, 7, 3, 4];
+/// Local node of a shell for each node of a cell, and the type of this.
+fn of_shell(kind: ShellKind) -> (&'static [usize], usize) {
+    match kind {
+        ShellKind::Mitc9 => (&[0, 2, 8, 6, 1, 5, 7, 3, 4], BIQUADRATIC_QUAD),
+        ShellKind::Mitc4 => (&[0, 1, 3, 2], QUAD),
+    }
+}
+
 /// Local node of a beam for each node of a quadratic edge.
 const OF_BEAM: [usize; 3] = [0, 2, 1];
 /// Types of cells.
+const QUAD: usize = 9;
 const BIQUADRATIC_QUAD: usize = 28;
 const QUADRATIC_EDGE: usize = 21;
 
@@ -19,7 +28,7 @@ pub struct Fields {
     /// Places of the nodes \[m\].
     pub nodes: Vec<[f64; 3]>,
     /// Nodes of the shells, row by row.
-    pub shells: Vec<[usize; 9]>,
+    pub shells: Vec<ShellNodes>,
     /// Nodes of the beams: an end, the middle, the other end.
     pub beams: Vec<[usize; 3]>,
     /// Vectors at the nodes, by name.
@@ -43,10 +52,13 @@ pub fn vtu(fields: &Fields) -> String {
     text.push_str("<Points>\n");
     vectors(&mut text, "Points", &fields.nodes);
     text.push_str("</Points>\n<Cells>\n");
-    let shells = fields
-        .shells
-        .iter()
-        .map(|nodes| OF_SHELL.map(|k| nodes[k]).to_vec());
+    let shells = fields.shells.iter().map(|nodes| {
+        of_shell(ShellKind::of(nodes))
+            .0
+            .iter()
+            .map(|&k| nodes[k])
+            .collect()
+    });
     let beams = fields
         .beams
         .iter()
@@ -71,9 +83,9 @@ pub fn vtu(fields: &Fields) -> String {
         ends.iter().map(<[usize; 1]>::as_slice),
     );
     let types: Vec<[usize; 1]> = (0..cells)
-        .map(|k| match k < fields.shells.len() {
-            true => [BIQUADRATIC_QUAD],
-            false => [QUADRATIC_EDGE],
+        .map(|k| match fields.shells.get(k) {
+            Some(nodes) => [of_shell(ShellKind::of(nodes)).1],
+            None => [QUADRATIC_EDGE],
         })
         .collect();
     integers(

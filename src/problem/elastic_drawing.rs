@@ -8,12 +8,22 @@ use crate::math::Vec3;
 use crate::model::finite::{ElementMesh, NODES, ShellElement};
 use crate::schema::Document;
 use crate::schema::modal::Modal;
+use crate::structures::mesh::{Edge, shell_edges};
 use crate::structures::modal::{BeamFrame, FlexibleBeam};
 use std::collections::BTreeMap;
 use std::sync::Arc;
 
 /// Nodes along the edges of an element, counter-clockwise.
-const EDGES: [[usize; 3]; 4] = [[0, 1, 2], [2, 5, 8], [8, 7, 6], [6, 3, 0]];
+fn edges(element: &ShellElement) -> [Edge; 4] {
+    let mut all = shell_edges(&element.nodes);
+    all[2..].iter_mut().for_each(|edge| edge.reverse());
+    all
+}
+
+/// The ends of an edge.
+fn ends(edge: &Edge) -> [usize; 2] {
+    [edge[0], edge[edge.len() - 1]]
+}
 
 /// A closed line of points that move on their body.
 #[derive(Clone, Debug)]
@@ -67,27 +77,27 @@ pub struct ShellLine {
 
 /// The free edges of shells, one after the other, with the beams that start from them, there and back.
 pub(super) fn shell_line(mesh: &Arc<ElementMesh>, thickness: Vec<f64>) -> ShellLine {
-    let edges = |element: &ShellElement| {
-        let nodes = element.nodes;
-        EDGES.map(|edge| edge.map(|local| nodes[local]))
+    let key = |edge: &Edge| {
+        let [a, b] = ends(edge);
+        [a.min(b), a.max(b)]
     };
-    let mut uses: BTreeMap<usize, usize> = BTreeMap::new();
+    let mut uses: BTreeMap<[usize; 2], usize> = BTreeMap::new();
     for edge in mesh.elements.iter().flat_map(edges) {
-        *uses.entry(edge[1]).or_default() += 1;
+        *uses.entry(key(&edge)).or_default() += 1;
     }
     let all = mesh.elements.iter().flat_map(edges);
-    let mut next: BTreeMap<usize, [usize; 3]> = (all.filter(|edge| uses[&edge[1]] == 1))
+    let mut next: BTreeMap<usize, Edge> = (all.filter(|edge| uses[&key(edge)] == 1))
         .map(|edge| (edge[0], edge))
         .collect();
     let mut beams = Beams::new(&mesh.beams);
     let mut nodes = Vec::new();
     while let Some((&start, _)) = next.first_key_value() {
         let mut at = start;
-        while let Some([from, middle, to]) = next.remove(&at) {
-            nodes.push(from);
-            beams.visit(from, &mut nodes);
-            nodes.push(middle);
-            at = to;
+        while let Some(edge) = next.remove(&at) {
+            nodes.push(at);
+            beams.visit(at, &mut nodes);
+            nodes.extend(&edge[1..edge.len() - 1]);
+            [_, at] = ends(&edge);
         }
         nodes.push(at);
     }

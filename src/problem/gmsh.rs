@@ -1,4 +1,4 @@
-//! Meshes of structures from files of Gmsh: quadrangles become nine-node shells, lines their edges or, where a
+//! Meshes of structures from files of Gmsh: quadrangles become shells of nine or four nodes, lines their edges or, where a
 //! file has no surface, three-node beams, and physical groups sets.
 
 use super::data_file::{DataFault, DataFiles};
@@ -11,13 +11,20 @@ use super::source::Source;
 use crate::math::Vec3;
 use crate::schema::Document;
 use crate::schema::structures::{Mesh as Written, ReadMesh, Structure};
-use crate::structures::mesh::{Mesh, SHELL_EDGES};
+use crate::structures::mesh::{Edge, Mesh, shell_edges};
 use crate::structures::quality::faults;
+use crate::structures::shell::{ShellKind, ShellNodes};
 use std::collections::{BTreeMap, HashMap, HashSet};
 use std::sync::Arc;
 
 /// The place in Gmsh's order of each of our nodes of a shell.
-const ORDER: [usize; 9] = [0, 4, 1, 7, 8, 5, 3, 6, 2];
+fn order(kind: ShellKind) -> &'static [usize] {
+    match kind {
+        ShellKind::Mitc9 => &[0, 4, 1, 7, 8, 5, 3, 6, 2],
+        ShellKind::Mitc4 => &[0, 1, 3, 2],
+    }
+}
+
 /// Names of groups without a name, before their number.
 const UNNAMED: [&str; 3] = ["point", "line", "surface"];
 /// The set of all nodes and all elements.
@@ -45,6 +52,7 @@ pub(super) fn load(
 ) -> Result<String, Faults> {
     let mut files = DataFiles::beside(file);
     for (pointer, structure) in structures(document) {
+        let kind = structure.shell_kind();
         let Written::Gmsh(gmsh) = &mut structure.mesh else {
             continue;
         };
@@ -59,7 +67,7 @@ pub(super) fn load(
             }
             let metres = gmsh.unit.metres();
             files.text(&pointer, &gmsh.file, bytes, |text| {
-                mesh(msh::read(text)?, metres)
+                mesh(msh::read(text)?, (kind, metres))
             })
         });
         let read = read.map_err(|fault| fault.located((file, source)))?;
@@ -84,7 +92,7 @@ pub(super) fn share(from: &Document, to: &mut Document) {
 }
 
 /// The mesh of shells, or of beams, in metres.
-fn mesh(mut msh: Msh, metres: f64) -> Result<ReadMesh, TextFault> {
+fn mesh(mut msh: Msh, (kind, metres): (ShellKind, f64)) -> Result<ReadMesh, TextFault> {
     let names = names(&msh)?;
     let most = msh.elements.iter().map(Element::dimension).max();
     let Some(most @ 1..=2) = most else {
@@ -99,12 +107,15 @@ fn mesh(mut msh: Msh, metres: f64) -> Result<ReadMesh, TextFault> {
         );
     };
     let mut elements = merged(std::mem::take(&mut msh.elements), &names)?;
-    complete(&mut elements, &mut msh.places)?;
+    match (most, kind) {
+        (2, ShellKind::Mitc4) => straight(&elements)?,
+        _ => complete(&mut elements, &mut msh.places)?,
+    }
     if most == 2 {
         align(&mut elements);
     }
     let mut read = ReadMesh::default();
-    let (index, of_file) = assemble(&elements, (&msh.places, metres), most, &mut read);
+    let (index, of_file) = assemble(&elements, (&msh.places, metres), (most, kind), &mut read);
     if let Some(fault) = faults(&read.mesh, &read.nodes).first() {
         let own = (fault.element()).map_or(&elements[0], |k| &elements[of_file[k]]);
         let found = format!("element {}: {fault}", own.number);
@@ -168,6 +179,18 @@ fn merged(elements: Vec<Element>, names: &Names) -> Result<Vec<Element>, TextFau
         first.groups.extend(element.groups);
     }
     Ok(all)
+}
+
+/// Refuses elements that four-node shells cannot be made of.
+fn straight(elements: &[Element]) -> Result<(), TextFault> {
+    let curved = |own: &&Element| matches!(own.nodes.len(), 3 | 8 | 9);
+    let Some(own) = elements.iter().find(curved) else {
+        return Ok(());
+    };
+    let found = format!("element {} of {} nodes", own.number, own.nodes.len());
+    let expected = "quadrangles of four nodes and lines of two, as \"element\" is \"mitc4\"";
+    let fault = TextFault::new(own.at.clone(), found, expected);
+    Err(fault.hint("gmsh -2 -order 1 writes such elements; \"mitc9\" takes those of this file"))
 }
 
 /// Gives elements of straight edges their middle nodes, and quadrangles of eight nodes the one inside.
@@ -254,7 +277,7 @@ fn align(elements: &mut [Element]) {
 fn assemble(
     elements: &[Element],
     (places, metres): (&[Vec3<f64>], f64),
-    most: usize,
+    (most, kind): (usize, ShellKind),
     to: &mut ReadMesh,
 ) -> (Vec<Option<usize>>, Vec<usize>) {
     let mut index: Vec<Option<usize>> = vec![None; places.len()];
@@ -269,7 +292,11 @@ fn assemble(
         };
         let own: Vec<usize> = element.nodes.iter().map(|&k| numbered(k)).collect();
         match most {
-            2 => to.mesh.shells.push(ORDER.map(|k| own[k])),
+            2 => {
+                let order = order(kind);
+                let nodes = ShellNodes::from_fn(order.len(), |k| own[order[k]]);
+                to.mesh.shells.push(nodes);
+            }
             _ => to.mesh.beams.push([own[0], own[2], own[1]]),
         }
         of_file.push(e);
@@ -298,14 +325,13 @@ fn name_sets(
     }
     own_sets.insert(ALL.into(), (0..count).collect());
     let shells = mesh.shells.iter();
-    let edges: HashSet<[usize; 3]> = shells
-        .flat_map(|shell| SHELL_EDGES.map(|edge| sorted(edge.map(|k| shell[k]))))
-        .collect();
+    let edges: HashSet<Edge> = shells.flat_map(shell_edges).map(sorted).collect();
     let mut in_sets: BTreeMap<&String, (Vec<usize>, HashSet<usize>)> = BTreeMap::new();
     for element in elements.iter().filter(|own| !own.groups.is_empty()) {
         let own: Option<Vec<usize>> = element.nodes.iter().map(|&k| index[k]).collect();
         let edge = match own.as_deref() {
-            Some(&[a, b, middle]) if of_shells => Some([a, middle, b]),
+            Some(&[a, b, middle]) if of_shells => Some(Edge::from([a, middle, b])),
+            Some(&[a, b]) if of_shells => Some(Edge::from([a, b])),
             _ => None,
         };
         let is_off = edge.is_some_and(|edge| !edges.contains(&sorted(edge)));
@@ -334,7 +360,7 @@ fn name_sets(
     Ok(())
 }
 
-fn sorted(mut nodes: [usize; 3]) -> [usize; 3] {
+fn sorted(mut nodes: Edge) -> Edge {
     nodes.sort_unstable();
     nodes
 }

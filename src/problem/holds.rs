@@ -17,7 +17,11 @@ use std::collections::BTreeSet;
 /// The nodes of a set of nodes or of an edge.
 pub fn nodes_of(mesh: &Mesh, set: &str) -> Option<Vec<usize>> {
     let nodes = mesh.node_sets.get(set).cloned();
-    nodes.or_else(|| mesh.edge_sets.get(set).map(|edges| edges.concat()))
+    nodes.or_else(|| {
+        mesh.edge_sets
+            .get(set)
+            .map(|edges| edges.iter().flatten().copied().collect())
+    })
 }
 
 /// The point of body `side` of a joint that its place names; none if it is another way there.

@@ -15,6 +15,7 @@ use crate::schema::loads::{
     Axes as WrittenAxes, Interpolation, Load as WrittenLoad, Motion, TimeFunction as Written,
 };
 use crate::structures::loads::edge_shares;
+use crate::structures::mesh::Edge;
 use std::collections::BTreeMap;
 use std::sync::Arc;
 
@@ -137,7 +138,7 @@ fn kind<S: Scalar>(
         WrittenLoad::Line(load) => {
             let own = elements(document, &load.body);
             let beams = own.sets.beam_sets[&load.beams].iter();
-            let beams: Vec<[usize; 3]> = beams.map(|&beam| own.sets.beams[beam]).collect();
+            let beams: Vec<Edge> = beams.map(|&beam| own.sets.beams[beam].into()).collect();
             let shares = edge_shares(&own.mesh.nodes, &beams);
             let spread = dead(assembly, shares, (&load.direction, load.axes));
             distributed(&load.body, spread, load.magnitude.parts())

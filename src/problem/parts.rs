@@ -18,23 +18,33 @@ use crate::structures::material::Material;
 use crate::structures::parts::{of_beam, of_mass};
 use crate::structures::structure::Structure;
 
+/// Steps between nodes along a line of a panel in this direction. A beam takes two of them: an element of nine nodes,
+/// or two of four.
+pub(super) fn steps_along(structure: &Written, along: Direction) -> Option<usize> {
+    let [nx, ny] = structure.mesh.panel_elements()?;
+    let order = structure.shell_kind().order();
+    Some(match along {
+        Direction::X => order * nx,
+        Direction::Y => order * ny,
+    })
+}
+
 /// The nodes of the beams of a line along a panel.
-fn line(mesh: &Mesh, along: Direction, at: f64) -> Vec<[usize; 3]> {
-    let Some([nx, ny]) = mesh.panel_elements() else {
+fn line(structure: &Written, along: Direction, at: f64) -> Vec<[usize; 3]> {
+    let mesh = &structure.mesh;
+    let (Some([nx, ny]), Some(steps)) = (mesh.panel_elements(), steps_along(structure, along))
+    else {
         return Vec::new();
     };
-    let columns = 2 * nx + usize::from(!matches!(mesh, Mesh::Cylinder { .. }));
+    let order = structure.shell_kind().order();
+    let columns = order * nx + usize::from(!matches!(mesh, Mesh::Cylinder { .. }));
     let node = |i: usize, j: usize| j * columns + i % columns;
-    let border = |count: usize| 2 * (at * count as f64).round() as usize;
+    let border = |count: usize| order * (at * count as f64).round() as usize;
     let place = |k: usize| match along {
         Direction::X => node(k, border(ny)),
         Direction::Y => node(border(nx), k),
     };
-    let count = match along {
-        Direction::X => nx,
-        Direction::Y => ny,
-    };
-    (0..count)
+    (0..steps / 2)
         .map(|e| [0, 1, 2].map(|k| place(2 * e + k)))
         .collect()
 }
@@ -48,7 +58,7 @@ pub(super) fn beams(elements: &Elements, part: &mut MeshPart<f64>) -> Vec<PartSo
         false => Vec::new(),
     };
     for (number, stiffener) in elements.stiffeners.values().enumerate() {
-        for nodes in line(&elements.structure.mesh, stiffener.along, stiffener.at) {
+        for nodes in line(&elements.structure, stiffener.along, stiffener.at) {
             all.push(PartSource::Stiffener(number));
             (part.orientations).push(normal(&part.mesh, &part.nodes, nodes[1]));
             part.mesh.beams.push(nodes);

@@ -8,12 +8,14 @@ use flexbody_mechanics::model::{
     Axes, DistributedLoad, Form, Load, LoadKind, Model, Spread, TimeFunction,
 };
 use flexbody_mechanics::structures::loads::edge_shares;
+use flexbody_mechanics::structures::shell::ShellKind;
 use flexbody_mechanics::system::loads::{self, LoadCotangent};
 use flexbody_mechanics::system::{InMotion, Numbering, bodies, placement};
 use reference::cases::{Case, TIME, dot, lift, parameters, slopes, unit};
 use reference::models::{Numbers, alone};
 use reference::shells::{
-    Shells, aluminium_plate, press, reduced_swing, shell_swing, shells, stiffened_swing,
+    Shells, aluminium_plate, four_node_swing, press, reduced_swing, shell_swing, shells_of,
+    stiffened_swing,
 };
 
 fn case(name: &str, mut model: Model<f64>) -> Case {
@@ -44,6 +46,7 @@ fn pull_backs() {
         case("full", shell_swing(3, [2, 1])),
         case("reduced", reduced_swing(4, [2, 1], 3)),
         case("stiffened", stiffened_swing(5, [1, 1], None)),
+        case("four nodes", four_node_swing(7, [2, 1], None)),
         case("rigid", reduced_swing(6, [1, 1], 0)),
     ] {
         let nv = case.v.len();
@@ -89,8 +92,17 @@ fn loaded(
     size: f64,
     loads: &dyn Fn(&Shells) -> Vec<DistributedLoad<f64>>,
 ) -> (Case, Shells, Vec<f64>) {
+    loaded_of(ShellKind::Mitc9, size, loads)
+}
+
+/// The same of shells of this kind.
+fn loaded_of(
+    kind: ShellKind,
+    size: f64,
+    loads: &dyn Fn(&Shells) -> Vec<DistributedLoad<f64>>,
+) -> (Case, Shells, Vec<f64>) {
     let mut numbers = Numbers(8);
-    let own = shells(&mut numbers, [3, 2], false);
+    let own = shells_of(kind, &mut numbers, [3, 2], false);
     let mut frame = numbers.body("panel");
     (frame.mass, frame.inertia) = own.elements.rigid();
     let mut model = alone(frame);
@@ -138,12 +150,23 @@ fn pressure(shells: usize, magnitude: f64) -> DistributedLoad<f64> {
 /// on a closed surface, which has no border, it vanishes.
 #[test]
 fn a_pressure_has_the_resultant_of_its_border() {
+    border(ShellKind::Mitc9);
+    border(ShellKind::Mitc4);
+}
+
+fn border(kind: ShellKind) {
     let p = 3.0;
-    let (case, own, q) = loaded(0.1, &|own| vec![pressure(own.elements.thickness.len(), p)]);
+    let all = |own: &Shells| vec![pressure(own.elements.thickness.len(), p)];
+    let (case, own, q) = loaded_of(kind, 0.1, &all);
     let x = places(&own, &q);
     let mut exact = Vec3::zeros();
     for (name, sign) in [("y0", 1.0), ("x1", 1.0), ("y1", -1.0), ("x0", -1.0)] {
-        for &[a, b, c] in &own.mesh.edge_sets[name] {
+        for edge in &own.mesh.edge_sets[name] {
+            if let [a, b] = edge[..] {
+                exact += x[a].cross(&x[b]) * (0.5 * p * sign);
+                continue;
+            }
+            let [a, b, c] = [edge[0], edge[1], edge[2]];
             // ∫ x × x,r dr of a parabola through three points, exact by three points of Gauss.
             let root = 0.6_f64.sqrt();
             for (r, weight) in [(-root, 5.0 / 9.0), (0.0, 8.0 / 9.0), (root, 5.0 / 9.0)] {
@@ -216,7 +239,8 @@ fn a_dead_load_has_the_resultant_of_its_length() {
         });
         let x = &own.elements.mesh.nodes;
         let length: f64 = (own.mesh.edge_sets["x1"].iter())
-            .map(|&[a, b, c]| {
+            .map(|edge| {
+                let [a, b, c] = [edge[0], edge[1], edge[2]];
                 // Simpson's rule for the length of arcs, of many pieces.
                 let speed =
                     |r: f64| (x[a] * (r - 0.5) - x[b] * (2.0 * r) + x[c] * (r + 0.5)).norm();

@@ -6,8 +6,7 @@ use crate::reference;
 use flexbody_mathematics::math::Vec3;
 use flexbody_mechanics::integrate::{Method, Settings, Trajectory, simulate};
 use flexbody_mechanics::model::{Form, Inertia, Model};
-use flexbody_mechanics::structures::shell::basis::TABLES;
-use flexbody_mechanics::structures::shell::{Field, Motion, NODES, Terms};
+use flexbody_mechanics::structures::shell::{Field, Motion, NODES, ShellKind, Terms};
 use flexbody_mechanics::structures::state::Configuration;
 use flexbody_mechanics::structures::supports::{AtNode, NodeUnknowns, Rotations, Unknowns};
 use flexbody_mechanics::system::bodies::{BodyMotion, all_force_balances};
@@ -15,12 +14,25 @@ use flexbody_mechanics::system::marker::{MarkerKinematics, RelativeMotion};
 use flexbody_mechanics::system::{Numbering, finite, flexible, placement};
 use reference::flexible::totals;
 use reference::models::Numbers;
-use reference::shells::{Shells, elastic_at_end, shells};
+use reference::shells::{Shells, elastic_at_end, shells_of};
 
-/// A free body of shells at a random state.
+/// Elements of nine and of four nodes on the same nodes.
+const KINDS: [(ShellKind, usize); 2] = [(ShellKind::Mitc9, 1), (ShellKind::Mitc4, 2)];
+
+/// A free body of shells of nine nodes at a random state.
 fn free(seed: u64, elements: [usize; 2], clamped: bool, size: f64) -> (Model<f64>, Shells) {
+    free_of(ShellKind::Mitc9, seed, elements, clamped, size)
+}
+
+fn free_of(
+    kind: ShellKind,
+    seed: u64,
+    elements: [usize; 2],
+    clamped: bool,
+    size: f64,
+) -> (Model<f64>, Shells) {
     let mut numbers = Numbers(seed);
-    let shells = shells(&mut numbers, elements, clamped);
+    let shells = shells_of(kind, &mut numbers, elements, clamped);
     let mut frame = numbers.body("panel");
     (frame.mass, frame.inertia) = shells.elements.rigid();
     let mut model = Model {
@@ -61,8 +73,10 @@ fn elastic_energy_is_that_of_the_shells() {
         rotations: Rotations::Global([false; 3]),
         first_rotation: 0,
     };
-    for (seed, elements, clamped) in [(1, [1, 1], false), (2, [2, 1], true), (3, [2, 2], false)] {
-        let (_, shells) = free(seed, elements, clamped, 0.05);
+    let all = [(1, [1, 1], false), (2, [2, 1], true), (3, [2, 2], false)];
+    for ((seed, elements, clamped), (kind, times)) in all.into_iter().flat_map(with_kinds) {
+        let elements = elements.map(|n: usize| n * times);
+        let (_, shells) = free_of(kind, seed, elements, clamped, 0.05);
         let own = &shells.elements;
         let q: Vec<f64> = Numbers(seed + 50).list(own.mesh.coordinates);
         let q: Vec<f64> = q.iter().map(|q| q * 0.05).collect();
@@ -80,7 +94,7 @@ fn elastic_energy_is_that_of_the_shells() {
             // θ × D gives back what moves the director.
             let mut motion = Motion::zeros();
             motion.displacement = field.points;
-            for a in 0..NODES {
+            for a in 0..element.nodes.len() {
                 let d = &element.points[NODES + a];
                 motion.rotation[a] = d.cross(&field.directors[a]);
             }
@@ -111,8 +125,10 @@ fn elastic_energy_is_that_of_the_shells() {
 /// of rotary inertia times the acceleration of directors; energy and momenta likewise.
 #[test]
 fn inertia_is_that_of_the_points() {
-    for (seed, elements, clamped) in [(11, [1, 1], false), (12, [2, 1], true)] {
-        let (model, shells) = free(seed, elements, clamped, 0.1);
+    let all = [(11, [1, 1], false), (12, [2, 1], true)];
+    for ((seed, elements, clamped), (kind, times)) in all.into_iter().flat_map(with_kinds) {
+        let elements = elements.map(|n: usize| n * times);
+        let (model, shells) = free_of(kind, seed, elements, clamped, 0.1);
         let own = &shells.elements;
         let numbering = Numbering::new(&model);
         let (q, v) = placement::guess(&model);
@@ -145,17 +161,18 @@ fn inertia_is_that_of_the_points() {
         let (mut linear, mut angular) = (Vec3::zeros(), Vec3::zeros());
         for (i, element) in own.mesh.elements.iter().enumerate() {
             let [u, rate, second, along] = [&x, &xdot, &xddot, &xw].map(|x| field(&shells, i, x));
-            for (k, basis) in TABLES.gauss.iter().enumerate() {
+            let tables = kind.tables();
+            for (k, basis) in tables.gauss.iter().enumerate() {
                 let nodes = |all: &dyn Fn(usize) -> Vec3<f64>| {
-                    let all = (0..NODES).map(|a| all(a) * basis.n[a]);
+                    let all = (0..basis.n.len()).map(|a| all(a) * basis.n[a]);
                     all.fold(Vec3::zeros(), |sum: Vec3<f64>, x| sum + x)
                 };
                 let h = own.thickness[i];
                 let tangents = [0, 1].map(|d| {
-                    let all = (0..NODES).map(|a| element.points[a] * basis.by[d][a]);
+                    let all = (0..basis.n.len()).map(|a| element.points[a] * basis.by[d][a]);
                     all.fold(Vec3::zeros(), |sum: Vec3<f64>, x| sum + x)
                 });
-                let area = tangents[0].cross(&tangents[1]).norm() * TABLES.weights[k];
+                let area = tangents[0].cross(&tangents[1]).norm() * tables.weights[k];
                 let masses = [
                     own.density[i] * h + own.surface_mass[i],
                     own.density[i] * h.powi(3) / 12.0,
@@ -202,11 +219,21 @@ fn run(model: &Model<f64>, duration: f64, steps: usize) -> Trajectory<f64> {
     simulate(model, duration, &Settings::steps(RADAU, steps)).expect("runs")
 }
 
+/// A case with each kind of elements.
+fn with_kinds<T: Copy>(case: T) -> [(T, (ShellKind, usize)); 2] {
+    KINDS.map(|kind| (case, kind))
+}
+
 /// A free body keeps its momenta; its energy is kept to the order of the method; a velocity that is added
 /// to all of it changes nothing of its deformation.
 #[test]
 fn a_free_body_moves_as_it_must() {
-    let (mut model, _) = free(21, [2, 1], false, 0.02);
+    for (kind, times) in KINDS {
+        free_motion(free_of(kind, 21, [2, 1].map(|n| n * times), false, 0.02).0);
+    }
+}
+
+fn free_motion(mut model: Model<f64>) {
     model.gravity.fill(0.0);
     let held = |run: &Trajectory<f64>, k: usize| {
         let mut motions = Vec::new();

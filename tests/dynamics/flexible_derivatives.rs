@@ -19,7 +19,7 @@ use flexbody_mechanics::system::{Numbering, flexible, initial, placement};
 use reference::cases::{Case, TIME, dot, lift, parameters, rows_agree, slopes, step, unit};
 use reference::flexible::{Points, modal, quadratic, stiffness, swing_of, totals};
 use reference::models::Numbers;
-use reference::shells::{press, reduced_swing, shell_swing, stiffened_swing};
+use reference::shells::{four_node_swing, press, reduced_swing, shell_swing, stiffened_swing};
 
 /// Swings of shapes and of shells at random states, their attachments a little open. Shells carry pressures and dead
 /// loads.
@@ -37,6 +37,8 @@ fn cases() -> Vec<Case> {
         (12, [2, 1], Some(4)),
     ];
     let stiffened = stiffened.map(|(seed, elements, v)| (seed, stiffened_swing(seed, elements, v)));
+    let four = [(15, [2, 1], None), (16, [2, 2], Some(4))];
+    let four = four.map(|(seed, elements, v)| (seed, four_node_swing(seed, elements, v)));
     // The inertia that leaves out deformations, of shells with beams, masses and damping, and in a basis.
     let truncated = [(13, None), (14, Some(4))];
     let truncated = truncated.map(|(seed, vectors)| {
@@ -76,6 +78,7 @@ fn cases() -> Vec<Case> {
         .chain(shells)
         .chain(reduced)
         .chain(stiffened)
+        .chain(four)
         .chain(truncated)
         .map(case)
         .collect()

@@ -6,6 +6,7 @@ use flexbody_mathematics::math::{Mat3, Vec3};
 use flexbody_mechanics::model::finite::FiniteElements;
 use flexbody_mechanics::model::flexible::Modal;
 use flexbody_mechanics::model::{Form, Model};
+use flexbody_mechanics::structures::shell::ShellKind;
 use flexbody_mechanics::system::bodies::{BodyMotion, all_force_balances};
 use flexbody_mechanics::system::reduction::{
     ModeChoice, ReducedBasis, Request, project, reduced_basis,
@@ -14,7 +15,7 @@ use flexbody_mechanics::system::{Numbering, flexible, placement};
 use nalgebra::{DMatrix, DVector};
 use reference::flexible::totals;
 use reference::models::Numbers;
-use reference::shells::{aluminium_plate, projected, shells};
+use reference::shells::{aluminium_plate, projected, shells_of};
 
 /// A free body in this form, with the motion of its frame and coordinates, and its accelerations.
 fn free(numbers: &Numbers, form: Form<f64>, start: [&[f64]; 3]) -> (Model<f64>, Vec<f64>) {
@@ -62,13 +63,16 @@ fn balance((model, a): &(Model<f64>, Vec<f64>)) -> (Vec<f64>, Vec<f64>, Vec<f64>
 #[test]
 fn a_basis_takes_the_mechanics_of_its_shells() {
     // Stiffeners are not among these: a basis leaves out the coupling of twist and bending of beams.
-    for (seed, elements, clamped, vectors) in [
-        (1, [1, 1], false, 2),
-        (2, [2, 1], true, 5),
-        (3, [2, 2], false, 4),
+    let (nine, four) = (ShellKind::Mitc9, ShellKind::Mitc4);
+    for (seed, kind, elements, clamped, vectors) in [
+        (1, nine, [1, 1], false, 2),
+        (2, nine, [2, 1], true, 5),
+        (3, nine, [2, 2], false, 4),
+        (4, four, [3, 2], true, 5),
+        (5, four, [2, 3], false, 4),
     ] {
         let mut numbers = Numbers(seed);
-        let shells = shells(&mut numbers, elements, clamped);
+        let shells = shells_of(kind, &mut numbers, elements, clamped);
         let mut projected = projected(&mut numbers, &shells, vectors);
         // All of these bend.
         projected = flexbody_mechanics::system::reduction::project(

@@ -30,6 +30,7 @@ mod fits;
 mod fixed_steps;
 mod flexible_families;
 mod flexible_scenes;
+mod four_nodes;
 mod function_expressions;
 mod gmsh;
 mod held_edges;

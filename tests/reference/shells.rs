@@ -12,11 +12,12 @@ use flexbody_mechanics::model::{
 };
 use flexbody_mechanics::structures::beam::{Beam, Section, SectionValues};
 use flexbody_mechanics::structures::floating::{FrameNodes, PointMotion, Surface, element_mesh};
-use flexbody_mechanics::structures::generate::panel;
+use flexbody_mechanics::structures::generate::{panel, panel_of as mesh_of};
 use flexbody_mechanics::structures::lumped_mass::LumpedMass;
 use flexbody_mechanics::structures::material::Material;
-use flexbody_mechanics::structures::mesh::Mesh;
+use flexbody_mechanics::structures::mesh::{Edge, Mesh};
 use flexbody_mechanics::structures::parts::{coordinates, of_beam, of_mass};
+use flexbody_mechanics::structures::shell::ShellKind;
 use flexbody_mechanics::structures::structure::Structure;
 use flexbody_mechanics::system::reduction::{ProjectedShells, project};
 use std::sync::Arc;
@@ -40,7 +41,7 @@ pub fn aluminium_plate(elements: [usize; 2], thickness: f64) -> FiniteElements<f
     };
     let structure = Structure::uniform(made.mesh.clone(), made.nodes, thickness, material);
     let structure = structure.expect("a sound mesh");
-    let frame = FrameNodes::Clamped(made.mesh.edge_sets["x0"].concat());
+    let frame = FrameNodes::Clamped(nodes_of(&made.mesh.edge_sets["x0"]));
     let (mesh, _) = element_mesh(&structure, &frame).expect("has its sets");
     let count = mesh.elements.len();
     FiniteElements {
@@ -63,14 +64,39 @@ pub fn elastic_at_end(model: &Model<f64>, run: &Trajectory<f64>) -> Vec<f64> {
         .collect()
 }
 
+/// The nodes of edges.
+pub fn nodes_of(edges: &[Edge]) -> Vec<usize> {
+    edges.iter().flatten().copied().collect()
+}
+
+/// Beams along the nodes of edges, each along one edge of three nodes or two of two.
+pub fn beams_along(edges: &[Edge]) -> Vec<[usize; 3]> {
+    let mut nodes = nodes_of(edges);
+    nodes.dedup();
+    let starts = (0..nodes.len() - 1).step_by(2);
+    starts
+        .map(|k| [nodes[k], nodes[k + 1], nodes[k + 2]])
+        .collect()
+}
+
 /// A curved and distorted panel whose elements differ in thickness and material.
 pub fn shells(numbers: &mut Numbers, elements: [usize; 2], clamped: bool) -> Shells {
-    panel_of(numbers, elements, clamped, false)
+    shells_of(ShellKind::Mitc9, numbers, elements, clamped)
+}
+
+/// The same of shells of this kind.
+pub fn shells_of(
+    kind: ShellKind,
+    numbers: &mut Numbers,
+    elements: [usize; 2],
+    clamped: bool,
+) -> Shells {
+    panel_of((kind, elements), numbers, clamped, false)
 }
 
 /// The same with beams along an edge, which have an offset, masses with inertia at three nodes, and damping.
 pub fn stiffened(numbers: &mut Numbers, elements: [usize; 2], clamped: bool) -> Shells {
-    panel_of(numbers, elements, clamped, true)
+    panel_of((ShellKind::Mitc9, elements), numbers, clamped, true)
 }
 
 /// Any beam between three nodes, soft as the shells.
@@ -109,9 +135,14 @@ fn any_mass(numbers: &mut Numbers) -> LumpedMass<f64> {
     }
 }
 
-fn panel_of(numbers: &mut Numbers, elements: [usize; 2], clamped: bool, more: bool) -> Shells {
+fn panel_of(
+    (kind, elements): (ShellKind, [usize; 2]),
+    numbers: &mut Numbers,
+    clamped: bool,
+    more: bool,
+) -> Shells {
     let bend = numbers.vector() * 0.2;
-    let made = panel(elements, false, |x, y| {
+    let made = mesh_of(kind, elements, false, |x, y| {
         let z = 0.2 + bend.x * x * x + bend.y * x * y + bend.z * y * y;
         Vec3::new(1.2 * x + 0.1 * y * y + 0.3, 0.8 * y + 0.1 * x * y - 0.2, z)
     });
@@ -123,7 +154,7 @@ fn panel_of(numbers: &mut Numbers, elements: [usize; 2], clamped: bool, more: bo
     };
     let mut mesh = made.mesh.clone();
     if more {
-        mesh.beams = mesh.edge_sets["y0"].clone();
+        mesh.beams = beams_along(&mesh.edge_sets["y0"]);
     }
     let orientations = vec![Vec3::new(0.2, 0.3, 1.0); mesh.beams.len()];
     let none = Section::Given(SectionValues::zeros());
@@ -132,8 +163,8 @@ fn panel_of(numbers: &mut Numbers, elements: [usize; 2], clamped: bool, more: bo
     let structure = structure.expect("a sound mesh");
     let last = structure.nodes.len() - 1;
     let frame = match clamped {
-        true => FrameNodes::Clamped(made.mesh.edge_sets["x0"].concat()),
-        false => FrameNodes::Chord([0, last, 2 * elements[0]]),
+        true => FrameNodes::Clamped(nodes_of(&made.mesh.edge_sets["x0"])),
+        false => FrameNodes::Chord([0, last, kind.order() * elements[0]]),
     };
     let (mut mesh, surface) = element_mesh(&structure, &frame).expect("has its sets");
     let count = mesh.elements.len();
@@ -188,17 +219,22 @@ pub fn attach(model: &mut Model<f64>, flexible: usize, name: &str, motion: Point
 /// A panel on a revolute joint along its first edge; a rigid body on a revolute joint at a corner; a spring
 /// and a force at its points. Joints are closed at the start.
 pub fn shell_swing(seed: u64, elements: [usize; 2]) -> Model<f64> {
-    swing(seed, elements, None, false)
+    swing(seed, (ShellKind::Mitc9, elements), None, false)
 }
 
 /// The same of a panel with beams, masses and damping.
 pub fn stiffened_swing(seed: u64, elements: [usize; 2], vectors: Option<usize>) -> Model<f64> {
-    swing(seed, elements, vectors, true)
+    swing(seed, (ShellKind::Mitc9, elements), vectors, true)
+}
+
+/// The same of shells of four nodes.
+pub fn four_node_swing(seed: u64, elements: [usize; 2], vectors: Option<usize>) -> Model<f64> {
+    swing(seed, (ShellKind::Mitc4, elements), vectors, true)
 }
 
 /// The same with this many coordinates: factors of any vectors.
 pub fn reduced_swing(seed: u64, elements: [usize; 2], vectors: usize) -> Model<f64> {
-    swing(seed, elements, Some(vectors), false)
+    swing(seed, (ShellKind::Mitc9, elements), Some(vectors), false)
 }
 
 /// Shells in a basis of any vectors.
@@ -262,9 +298,14 @@ pub fn press(model: &mut Model<f64>) {
     }
 }
 
-fn swing(seed: u64, elements: [usize; 2], vectors: Option<usize>, more: bool) -> Model<f64> {
+fn swing(
+    seed: u64,
+    mesh: (ShellKind, [usize; 2]),
+    vectors: Option<usize>,
+    more: bool,
+) -> Model<f64> {
     let mut numbers = Numbers(seed);
-    let shells = panel_of(&mut numbers, elements, false, more);
+    let shells = panel_of(mesh, &mut numbers, false, more);
     let projected = vectors.map(|count| projected(&mut numbers, &shells, count));
     let mut frame = numbers.body("panel");
     (frame.mass, frame.inertia) = shells.elements.rigid();
@@ -291,8 +332,7 @@ fn swing(seed: u64, elements: [usize; 2], vectors: Option<usize>, more: bool) ->
         None => point,
         Some(projected) => projected.point(&point),
     };
-    let corner = *shells.mesh.edge_sets["x1"]
-        .concat()
+    let corner = *nodes_of(&shells.mesh.edge_sets["x1"])
         .last()
         .expect("an edge");
     let root = attach(

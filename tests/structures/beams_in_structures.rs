@@ -22,7 +22,9 @@ fn stiffened(numbers: &mut Numbers) -> Structure<f64> {
         *node += numbers.vector(0.01);
     }
     let mut mesh = generated.mesh;
-    mesh.beams = mesh.edge_sets["y0"].clone();
+    mesh.beams = (mesh.edge_sets["y0"].iter())
+        .map(|edge| [edge[0], edge[1], edge[2]])
+        .collect();
     mesh.beams.push([0, 5, 10]);
     mesh.beam_sets.insert("all".into(), (0..3).collect());
     let sections = [

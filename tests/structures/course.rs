@@ -1,9 +1,10 @@
 //! The linear obstacle course of shells (MacNeal & Harder 1985; Belytschko et al. 1985; Morley 1963), six
 //! unknowns a node. Each function gives the displacement on a mesh of size n as a part of the published one.
 
-use flexbody_mechanics::structures::generate::{Generated, curved_panel, panel, plate};
+use flexbody_mechanics::structures::generate::{Generated, curved_panel_of, panel_of, plate_of};
 use flexbody_mechanics::structures::loads::Load;
 use flexbody_mechanics::structures::material::Material;
+use flexbody_mechanics::structures::shell::ShellKind;
 use flexbody_mechanics::structures::statics::StaticProblem;
 use flexbody_mechanics::structures::structure::Structure;
 use flexbody_mechanics::structures::supports::{NodeUnknowns, Support};
@@ -48,9 +49,9 @@ fn displacement(
 }
 
 /// Scordelis–Lo roof: a quarter, n × n elements, from the crown (angle 90°) down to the free edge.
-pub(crate) fn scordelis_lo(n: usize) -> f64 {
+pub(crate) fn scordelis_lo(kind: ShellKind, n: usize) -> f64 {
     let angle = |degrees: f64| degrees.to_radians();
-    let roof = curved_panel(25.0, 25.0, [angle(90.0), angle(50.0)], [n, n]);
+    let roof = curved_panel_of(kind, (25.0, 25.0, [angle(90.0), angle(50.0)]), [n, n]);
     let weight = Load::Area {
         faces: "all".into(),
         force: Vec3::new(0.0, -90.0, 0.0),
@@ -65,8 +66,9 @@ pub(crate) fn scordelis_lo(n: usize) -> f64 {
 }
 
 /// Pinched cylinder with diaphragms: an eighth, n × n elements.
-pub(crate) fn pinched_cylinder(n: usize) -> f64 {
-    let part = curved_panel(300.0, 300.0, [0.0, std::f64::consts::FRAC_PI_2], [n, n]);
+pub(crate) fn pinched_cylinder(kind: ShellKind, n: usize) -> f64 {
+    let quarter = std::f64::consts::FRAC_PI_2;
+    let part = curved_panel_of(kind, (300.0, 300.0, [0.0, quarter]), [n, n]);
     let load = Load::Point {
         nodes: "x0y0".into(),
         force: Vec3::new(-0.25, 0.0, 0.0),
@@ -83,10 +85,10 @@ pub(crate) fn pinched_cylinder(n: usize) -> f64 {
 }
 
 /// Pinched hemisphere with a hole of 18°: a quarter, n × n elements.
-pub(crate) fn hemisphere(n: usize) -> f64 {
+pub(crate) fn hemisphere(kind: ShellKind, n: usize) -> f64 {
     let quarter = std::f64::consts::FRAC_PI_2;
     // From the equator up to 72°.
-    let mut part = panel([n, n], false, |x, y| {
+    let mut part = panel_of(kind, [n, n], false, |x, y| {
         let ((sp, cp), (st, ct)) = ((x * quarter).sin_cos(), (y * 0.8 * quarter).sin_cos());
         Vec3::new(ct * cp, ct * sp, st) * 10.0
     });
@@ -124,9 +126,11 @@ pub(crate) fn hemisphere(n: usize) -> f64 {
 
 /// Morley's rhombic plate with angles of 30°, simply supported, under pressure, n × n elements: deflection of
 /// the centre by 0.408e-3 q L⁴/D (Morley 1963, without shear), at t/L = `slenderness`.
-pub(crate) fn skew_plate(n: usize, slenderness: f64) -> f64 {
+pub(crate) fn skew_plate(kind: ShellKind, n: usize, slenderness: f64) -> f64 {
     let (sin, cos) = 30_f64.to_radians().sin_cos();
-    let mut plate = panel([n, n], false, |x, y| Vec3::new(x + y * cos, y * sin, 0.0));
+    let mut plate = panel_of(kind, [n, n], false, |x, y| {
+        Vec3::new(x + y * cos, y * sin, 0.0)
+    });
     let centre = plate.mesh.nodes / 2;
     plate.mesh.node_sets.insert("centre".into(), vec![centre]);
     let (young, poisson) = (1e7, 0.3);
@@ -149,10 +153,10 @@ pub(crate) fn skew_plate(n: usize, slenderness: f64) -> f64 {
 
 /// Beam twisted by 90°, 6n × n elements, clamped at one end: displacements of the other end by a force along the
 /// width there and by one along the thickness there, by 0.005424 and 0.001754 (MacNeal & Harder 1985).
-pub(crate) fn twisted_beam(n: usize) -> [f64; 2] {
+pub(crate) fn twisted_beam(kind: ShellKind, n: usize) -> [f64; 2] {
     let (length, width, thickness) = (12.0, 1.1, 0.32);
     let one = |direction: Vec3<f64>, expected: f64| {
-        let mut beam = panel([6 * n, n], false, |x, y| {
+        let mut beam = panel_of(kind, [6 * n, n], false, |x, y| {
             let (sin, cos) = (x * std::f64::consts::FRAC_PI_2).sin_cos();
             let across = width * (y - 0.5);
             Vec3::new(length * x, across * cos, across * sin)
@@ -180,14 +184,15 @@ fn next(state: &mut u64) -> f64 {
 
 /// A strip of 1.2 × 0.8 with n × n elements; with a `seed` the inner corners are displaced at random by up to an
 /// eighth of an element.
-fn strip(n: usize, seed: Option<u64>) -> Generated<f64> {
-    let mut strip = plate([1.2, 0.8], [n, n]);
+fn strip(kind: ShellKind, n: usize, seed: Option<u64>) -> Generated<f64> {
+    let mut strip = plate_of(kind, [1.2, 0.8], [n, n]);
     let Some(mut state) = seed else {
         return strip;
     };
-    let row = 2 * n + 1;
-    for j in (2..2 * n).step_by(2) {
-        for i in (2..2 * n).step_by(2) {
+    let order = kind.order();
+    let row = order * n + 1;
+    for j in (order..order * n).step_by(order) {
+        for i in (order..order * n).step_by(order) {
             let moved = Vec3::new(next(&mut state), next(&mut state), 0.0);
             strip.nodes[j * row + i] += moved * (0.1 / n as f64);
         }
@@ -197,7 +202,7 @@ fn strip(n: usize, seed: Option<u64>) -> Generated<f64> {
     let at = |i: usize, j: usize| corners[j * row + i];
     for j in 0..row {
         for i in 0..row {
-            let ([i0, i1], [j0, j1]) = ([i - i % 2, i + i % 2], [j - j % 2, j + j % 2]);
+            let [[i0, i1], [j0, j1]] = [i, j].map(|k| [k - k % order, k + k % order]);
             strip.nodes[j * row + i] = (at(i0, j0) + at(i1, j0) + at(i0, j1) + at(i1, j1)) / 4.0;
         }
     }
@@ -206,7 +211,7 @@ fn strip(n: usize, seed: Option<u64>) -> Generated<f64> {
 
 /// What distorted elements take from the deflection of a clamped strip under a force on its edge: the mean over five
 /// meshes of 1 − w / w of the regular mesh, at t/L = `slenderness`.
-pub(crate) fn loss_by_distortion(n: usize, slenderness: f64) -> f64 {
+pub(crate) fn loss_by_distortion(kind: ShellKind, n: usize, slenderness: f64) -> f64 {
     let deflection = |seed: Option<u64>| {
         let load = Load::Edge {
             edges: "x1".into(),
@@ -214,7 +219,7 @@ pub(crate) fn loss_by_distortion(n: usize, slenderness: f64) -> f64 {
         };
         let (thickness, held) = (1.2 * slenderness, [Support::clamp("x0")]);
         let steel = material(7e10, 0.3);
-        displacement(strip(n, seed), thickness, steel, &held, load, "x1y0").z
+        displacement(strip(kind, n, seed), thickness, steel, &held, load, "x1y0").z
     };
     let regular = deflection(None);
     let losses = (1..=5).map(|seed| 1.0 - deflection(Some(seed)) / regular);

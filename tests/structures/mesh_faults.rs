@@ -61,7 +61,7 @@ fn faults_name_the_element_and_the_node() {
     // The second element is wound in reverse: rows of nodes in reverse order.
     let wound = with(&|g| {
         let old = g.mesh.shells[1];
-        g.mesh.shells[1] = [2, 1, 0, 5, 4, 3, 8, 7, 6].map(|k| old[k]);
+        g.mesh.shells[1] = [2, 1, 0, 5, 4, 3, 8, 7, 6].map(|k| old[k]).into();
     });
     assert!(
         wound.contains(&MeshFault::OppositeNormals {

@@ -1,21 +1,25 @@
 //! Derivatives of frequencies against the complex step, and against differences of whole solutions.
 
-use super::sample::{ALUMINIUM, Compared, Numbers, complex_step, structure_numbers, with_numbers};
+use super::sample::{
+    ALUMINIUM, Compared, KINDS, Numbers, complex_step, structure_numbers, with_numbers,
+};
 use flexbody_mathematics::math::{Complex64, Vec3};
-use flexbody_mechanics::structures::generate::{Generated, panel, plate};
+use flexbody_mechanics::structures::generate::{Generated, panel_of, plate};
 use flexbody_mechanics::structures::lumped_mass::LumpedMass;
 use flexbody_mechanics::structures::modes::{
     ModalFailure, ModalProblem, Modes, frequency_gradient, lowest_frequency, reduced,
 };
+use flexbody_mechanics::structures::shell::ShellKind;
 use flexbody_mechanics::structures::structure::Structure;
 use flexbody_mechanics::structures::supports::{NodeUnknowns, Support};
 use nalgebra::DMatrix;
 
 type Matrix = DMatrix<Complex64>;
 
-/// A curved and disturbed panel with masses of all kinds.
-fn panel_with_masses(numbers: &mut Numbers) -> Structure<f64> {
-    let mut generated = panel([3, 2], false, |x, y| {
+/// A curved and disturbed panel with masses of all kinds, of as many nodes with both kinds of elements.
+fn panel_with_masses(kind: ShellKind, numbers: &mut Numbers) -> Structure<f64> {
+    let elements = [6, 4].map(|steps| steps / kind.order());
+    let mut generated = panel_of(kind, elements, false, |x, y| {
         Vec3::new(1.5 * x, 0.8 * y, 0.2 * x * (1.0 - x) + 0.1 * y * y)
     });
     for node in &mut generated.nodes {
@@ -53,12 +57,14 @@ fn supports() -> [Support; 2] {
 
 #[test]
 fn separate_frequencies_have_exact_derivatives_by_everything() {
-    for (seed, unknowns, free) in [
+    let all = [
         (41, NodeUnknowns::Natural, false),
         (42, NodeUnknowns::Six, false),
         (43, NodeUnknowns::Natural, true),
-    ] {
-        let structure = panel_with_masses(&mut Numbers::new(seed));
+    ];
+    let all = all.into_iter();
+    for (kind, (seed, unknowns, free)) in all.flat_map(|own| KINDS.map(|kind| (kind, own))) {
+        let structure = panel_with_masses(kind, &mut Numbers::new(seed));
         let supports = if free {
             Vec::new()
         } else {
@@ -94,7 +100,7 @@ fn separate_frequencies_have_exact_derivatives_by_everything() {
 /// The eigenvalues of changed structures check the derivatives without any part of the solution.
 #[test]
 fn frequencies_follow_their_derivatives_in_whole_solutions() {
-    let structure = panel_with_masses(&mut Numbers::new(44));
+    let structure = panel_with_masses(ShellKind::Mitc9, &mut Numbers::new(44));
     let supports = supports();
     let mut problem =
         ModalProblem::new(&structure, &supports, NodeUnknowns::Natural).expect("sets");

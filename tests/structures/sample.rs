@@ -2,7 +2,7 @@
 
 use flexbody_mathematics::math::{Complex64, Scalar, Vec3};
 use flexbody_mechanics::structures::material::Material;
-use flexbody_mechanics::structures::shell::{Field, Motion, NODES, Shell};
+use flexbody_mechanics::structures::shell::{Field, Motion, NODES, Shell, ShellKind};
 use flexbody_mechanics::structures::structure::Structure;
 
 /// A sequence of numbers in (−1, 1), by a congruential generator (Knuth's MMIX constants).
@@ -29,6 +29,9 @@ impl Numbers {
     }
 }
 
+/// Elements of nine and of four nodes.
+pub const KINDS: [ShellKind; 2] = [ShellKind::Mitc9, ShellKind::Mitc4];
+
 pub const ALUMINIUM: Material<f64> = Material {
     young: 70e9,
     poisson: 0.3,
@@ -37,16 +40,19 @@ pub const ALUMINIUM: Material<f64> = Material {
 };
 
 /// A curved and distorted element whose directors are near its normals.
-pub fn distorted_element(numbers: &mut Numbers, drilling: bool) -> Shell<f64> {
+pub fn distorted_element(kind: ShellKind, numbers: &mut Numbers, drilling: bool) -> Shell<f64> {
     let mut geometry = Field::zeros();
-    for k in 0..NODES {
-        let (r, s) = ((k % 3) as f64 - 1.0, (k / 3) as f64 - 1.0);
+    let wide = kind.order() + 1;
+    for k in 0..wide * wide {
+        let place = |i: usize| 2.0 * i as f64 / kind.order() as f64 - 1.0;
+        let (r, s) = (place(k % wide), place(k / wide));
         geometry.points[k] = Vec3::new(0.5 * r + 0.1 * s, 0.35 * s, 0.2 * r * r - 0.1 * r * s)
             + numbers.vector(0.05);
         geometry.directors[k] =
             (Vec3::new(-0.8 * r, 0.2 * r, 1.0) + numbers.vector(0.05)).normalize();
     }
     Shell {
+        kind,
         geometry,
         thickness: 0.03,
         material: ALUMINIUM,
@@ -55,9 +61,9 @@ pub fn distorted_element(numbers: &mut Numbers, drilling: bool) -> Shell<f64> {
     }
 }
 
-pub fn random_motion(numbers: &mut Numbers) -> Motion<f64> {
+pub fn random_motion(kind: ShellKind, numbers: &mut Numbers) -> Motion<f64> {
     let mut motion = Motion::zeros();
-    for a in 0..NODES {
+    for a in 0..(kind.order() + 1).pow(2) {
         motion.displacement[a] = numbers.vector(0.01);
         motion.rotation[a] = numbers.vector(0.03);
     }
@@ -78,7 +84,7 @@ pub fn shell_numbers<S: Scalar>(shell: &Shell<S>) -> Vec<S> {
 }
 
 /// The element with these numbers.
-pub fn shell_of<S: Scalar>(numbers: &[S], drilling: bool) -> Shell<S> {
+pub fn shell_of<S: Scalar>(kind: ShellKind, numbers: &[S], drilling: bool) -> Shell<S> {
     let mut geometry = Field::zeros();
     for a in 0..NODES {
         geometry.points[a] = Vec3::from_column_slice(&numbers[6 * a..6 * a + 3]);
@@ -86,6 +92,7 @@ pub fn shell_of<S: Scalar>(numbers: &[S], drilling: bool) -> Shell<S> {
     }
     let rest = &numbers[6 * NODES..];
     Shell {
+        kind,
         geometry,
         thickness: rest[0],
         surface_mass: rest[1],

@@ -1,12 +1,12 @@
 //! Every derivative of the shell element against the complex step, on curved, distorted elements.
 
 use super::sample::{
-    Compared, Numbers, complex_step, distorted_element, motion_numbers, motion_of, random_motion,
-    shell_numbers, shell_of,
+    Compared, KINDS, Numbers, complex_step, distorted_element, motion_numbers, motion_of,
+    random_motion, shell_numbers, shell_of,
 };
 use flexbody_mathematics::math::{Complex64, Dual, Scalar};
 use flexbody_mechanics::structures::shell::{
-    MassMoments, Motion, NODES, STRESS_POINTS, Shell, ShellCotangent, Terms,
+    MassMoments, Motion, NODES, STRESS_POINTS, Shell, ShellCotangent, ShellKind, Terms,
 };
 
 const TERMS: [Terms; 3] = [
@@ -24,6 +24,7 @@ const SHELL_KINDS: [usize; 7] = [6 * NODES, 1, 1, 1, 1, 1, 1];
 
 fn cotangent_numbers<S: Scalar>(cotangent: &ShellCotangent<S>) -> Vec<S> {
     shell_numbers(&Shell {
+        kind: ShellKind::default(),
         geometry: cotangent.geometry,
         thickness: cotangent.thickness,
         material: cotangent.material,
@@ -49,10 +50,11 @@ fn check(
             .collect::<Vec<_>>(),
     );
     let exact = complex_step(&shell_numbers(shell), |x| {
-        value(&shell_of(x, shell.drilling), &fixed)
+        value(&shell_of(shell.kind, x, shell.drilling), &fixed)
     });
     let real = value(
         &shell_of(
+            shell.kind,
             &shell_numbers(shell)
                 .into_iter()
                 .map(Complex64::from)
@@ -75,7 +77,7 @@ fn check(
         .into_iter()
         .map(Complex64::from)
         .collect();
-    let lifted = shell_of(&lifted, shell.drilling);
+    let lifted = shell_of(shell.kind, &lifted, shell.drilling);
     let exact = complex_step(&motion_numbers(motion), |x| value(&lifted, &motion_of(x)));
     let found = motion_numbers(&force);
     Compared {
@@ -91,10 +93,11 @@ fn check(
 
 #[test]
 fn energies_stresses_and_masses_have_exact_derivatives() {
-    for (seed, drilling) in [(3, false), (4, true)] {
+    let all = [(3, false), (4, true)].into_iter();
+    for (kind, (seed, drilling)) in all.flat_map(|own| KINDS.map(|kind| (kind, own))) {
         let mut numbers = Numbers::new(seed);
-        let shell = distorted_element(&mut numbers, drilling);
-        let motion = random_motion(&mut numbers);
+        let shell = distorted_element(kind, &mut numbers, drilling);
+        let motion = random_motion(kind, &mut numbers);
         for terms in TERMS {
             check(
                 "energy",
@@ -149,10 +152,13 @@ fn energies_stresses_and_masses_have_exact_derivatives() {
 /// parts of the derivatives of the energy at v + ε ψ.
 #[test]
 fn dual_motions_give_the_derivatives_of_the_force_times_an_adjoint() {
-    let mut numbers = Numbers::new(5);
-    let shell = distorted_element(&mut numbers, true);
-    let (motion, adjoint) = (random_motion(&mut numbers), random_motion(&mut numbers));
-    for terms in TERMS {
+    for (kind, terms) in KINDS
+        .into_iter()
+        .flat_map(|kind| TERMS.map(|terms| (kind, terms)))
+    {
+        let mut numbers = Numbers::new(5);
+        let shell = distorted_element(kind, &mut numbers, true);
+        let [motion, adjoint] = [0; 2].map(|_| random_motion(kind, &mut numbers));
         let dual: Vec<Dual> = motion_numbers(&motion)
             .into_iter()
             .zip(motion_numbers(&adjoint))
@@ -160,7 +166,7 @@ fn dual_motions_give_the_derivatives_of_the_force_times_an_adjoint() {
             .collect();
         let lifted: Vec<Dual> = shell_numbers(&shell).into_iter().map(Dual::from).collect();
         let mut to = ShellCotangent::zeros();
-        shell_of(&lifted, true).add_energy_transpose(
+        shell_of(kind, &lifted, true).add_energy_transpose(
             &motion_of(&dual),
             terms,
             &mut Motion::zeros(),
@@ -174,7 +180,7 @@ fn dual_motions_give_the_derivatives_of_the_force_times_an_adjoint() {
                 .collect();
             let mut force = Motion::zeros();
             let to = &mut ShellCotangent::zeros();
-            shell_of(x, true).add_energy_transpose(&motion_of(&at), terms, &mut force, to);
+            shell_of(kind, x, true).add_energy_transpose(&motion_of(&at), terms, &mut force, to);
             let force = motion_numbers(&force);
             force
                 .iter()

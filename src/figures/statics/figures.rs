@@ -1,5 +1,6 @@
 //! Pictures of structures: thickness, deformed shape with stress, mode shapes.
 
+use crate::detail::{quarters, whole};
 use crate::driver::statics::StaticDesign;
 use crate::math::Vec3;
 use crate::plots::{Camera, StructureView, convergence, structure};
@@ -9,7 +10,7 @@ use crate::shell_fields::UNKNOWN;
 use crate::structures::beam::{BEAM_NODES, Beam};
 use crate::structures::functions::Solved;
 use crate::structures::mesh::Mesh;
-use crate::structures::shell::STRESS_POINTS;
+use crate::structures::shell::{STRESS_POINTS, ShellKind};
 use crate::structures::state::NodalMotion;
 use std::f64::consts::PI;
 
@@ -129,32 +130,39 @@ pub(super) fn is_in_quarters(mesh: &Mesh) -> bool {
     mesh.shells.len() <= MOST_IN_QUARTERS
 }
 
-/// A view of a mesh with its nodes at `places`; `value` gives the colour of the quarter (i, j) of a shell,
-/// or of a beam.
+/// Corners in the order of nodes, from that around a part.
+fn row_by_row([a, b, c, d]: [usize; 4]) -> [usize; 4] {
+    [a, b, d, c]
+}
+
+/// A view of a mesh with its nodes at `places`; `of_shell` gives the colour of a part of a shell with these
+/// corners among its nodes or Gauss points, `of_beam` that of a beam.
 fn view(
     mesh: &Mesh,
     places: &[Vec3<f64>],
     (title, label): (String, &str),
-    of_shell: impl Fn(usize, usize, usize) -> f64,
+    of_shell: impl Fn(usize, [usize; 4]) -> f64,
     of_beam: impl Fn(usize) -> f64,
 ) -> StructureView {
     let at = |node: usize| -> [f64; 3] { places[node].into() };
     let mut faces = Vec::with_capacity(4 * mesh.shells.len());
     let mut edges = Vec::new();
     for (index, nodes) in mesh.shells.iter().enumerate() {
-        let quarters = [(0, 0), (1, 0), (0, 1), (1, 1)].map(|(i, j)| {
-            let corner = |di: usize, dj: usize| at(nodes[3 * (j + dj) + i + di]);
-            let corners = [corner(0, 0), corner(1, 0), corner(1, 1), corner(0, 1)];
-            (corners, of_shell(index, i, j))
-        });
+        let kind = ShellKind::of(nodes);
+        let parts = quarters(kind).iter();
+        let parts = parts.map(|corners| (corners.map(|k| at(nodes[k])), of_shell(index, *corners)));
         if !is_in_quarters(mesh) {
-            let value = quarters.map(|(_, value)| value).into_iter();
+            let value = parts.map(|(_, value)| value);
             let value = value.fold(f64::NEG_INFINITY, larger);
-            faces.push(([0, 2, 8, 6].map(|k| at(nodes[k])), value));
+            faces.push((whole(kind).map(|k| at(nodes[k])), value));
         } else {
-            faces.extend(quarters);
+            faces.extend(parts);
         }
-        edges.push([0, 1, 2, 5, 8, 7, 6, 3, 0].map(|k| at(nodes[k])).to_vec());
+        let line: &[usize] = match kind {
+            ShellKind::Mitc9 => &[0, 1, 2, 5, 8, 7, 6, 3, 0],
+            ShellKind::Mitc4 => &[0, 1, 3, 2, 0],
+        };
+        edges.push(line.iter().map(|&k| at(nodes[k])).collect());
     }
     let lines = mesh.beams.iter().enumerate();
     let lines: Vec<(Vec<[f64; 3]>, f64)> = lines
@@ -192,7 +200,7 @@ pub(super) fn thickness(title: &str, design: &StaticDesign) -> Option<StructureV
         mesh,
         &structure.nodes,
         (text, "h [mm]"),
-        |index, _, _| mm(index),
+        |index, _| mm(index),
         |_| 1e3 * least,
     );
     if view.range[1] - view.range[0] < 1e-9 * view.range[1] {
@@ -283,14 +291,10 @@ pub(super) fn deformed(
         let places = moved(design, &motion.displacement, factor * share);
         let yields = yield_stresses(design);
         // The larger of both faces at the four Gauss points of a quarter, in MPa.
-        let of_shell = |index: usize, i: usize, j: usize| {
-            let points = [(i, j), (i + 1, j), (i, j + 1), (i + 1, j + 1)];
+        let of_shell = |index: usize, corners: [usize; 4]| {
+            let points = row_by_row(corners).into_iter();
             let sum: f64 = points
-                .iter()
-                .map(|(i, j)| {
-                    let g = 3 * j + i;
-                    stress[index][2 * g].max(stress[index][2 * g + 1])
-                })
+                .map(|g| stress[index][2 * g].max(stress[index][2 * g + 1]))
                 .sum();
             0.25 * sum * yields[index] * 1e-6
         };
@@ -369,14 +373,10 @@ pub(super) fn modes(design: &StaticDesign, share: f64) -> Vec<StructureView> {
         let f = lambda.sqrt() / (2.0 * PI);
         let text = format!("mode {}, {f:.2} Hz", k + 1);
         let size = |node: usize| factor * motion[node].norm() / (SHOWN * size(design));
-        let of_shell = |index: usize, i: usize, j: usize| {
+        let of_shell = |index: usize, corners: [usize; 4]| {
             let nodes = &mesh.shells[index];
-            let corners = [(i, j), (i + 1, j), (i, j + 1), (i + 1, j + 1)];
-            corners
-                .iter()
-                .map(|(i, j)| size(nodes[3 * j + i]))
-                .sum::<f64>()
-                * 0.25
+            let corners = row_by_row(corners).into_iter();
+            corners.map(|k| size(nodes[k])).sum::<f64>() * 0.25
         };
         let of_beam = |index: usize| size(mesh.beams[index][1]);
         let mut view = view(mesh, &places, (text, "|u| [-]"), of_shell, of_beam);

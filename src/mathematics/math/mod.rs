@@ -1,5 +1,6 @@
-//! Scalars, vectors, rotations and smooth maxima: mathematics without mechanics.
+//! Scalars, vectors, short lists, rotations and smooth maxima: mathematics without mechanics.
 
+pub mod array_vec;
 pub mod lagrange;
 pub mod legendre;
 pub mod parameters;
@@ -9,5 +10,6 @@ pub mod slices;
 pub mod soft_max;
 pub mod unit;
 
+pub use array_vec::ArrayVec;
 pub use parameters::{Parameters, parameters};
 pub use scalar::{Complex64, Dual, Mat3, Scalar, Vec3};

@@ -18,16 +18,18 @@
 pub use super::element_operators::UNKNOWNS;
 use super::element_operators::{Columns, Symmetric};
 use super::shapes::{ModalInertia, ModalStiffness};
+use super::shell_kind::{SHELL_NODES, ShellKind, ShellNodes};
 use crate::math::{Mat3, Vec3, parameters};
 use std::sync::{Arc, OnceLock};
 
-/// Nodes of an element.
-pub const NODES: usize = 9;
-/// Points of an element: the positions of its nodes, then their directors.
+/// Nodes of an element, at most.
+pub const NODES: usize = SHELL_NODES;
+/// Points of an element at most: the positions of its nodes, then from [`NODES`] on their directors. Those that an
+/// element does not have are zero.
 pub const POINTS: usize = 2 * NODES;
-/// Displacements of the nodes of an element.
+/// Displacements of the nodes of an element, at most.
 pub const DISPLACEMENTS: usize = 3 * NODES;
-/// Membrane strains of an element, with the three of the patch correction.
+/// Membrane strains of an element, with the three of the patch correction; those that its kind does not have are zero.
 pub const STRAINS: usize = 19;
 /// Those with von Karman's term.
 pub const QUADRATIC: usize = 16;
@@ -100,11 +102,11 @@ pub struct ElementMesh {
     pub beams: Vec<[usize; 3]>,
 }
 
-/// A nine-node shell.
+/// A shell of nine or four nodes.
 #[derive(Clone, Debug)]
 pub struct ShellElement {
     /// Its nodes.
-    pub nodes: [usize; NODES],
+    pub nodes: ShellNodes,
     /// The coordinate of each unknown; none where the frame holds it. Displacements come first.
     pub coordinates: Vec<Option<usize>>,
     /// X_a \[m\], then D_a.
@@ -133,6 +135,18 @@ pub struct ShellElement {
     pub poisson: f64,
     /// Yield stress \[Pa\].
     pub yield_stress: f64,
+}
+
+impl ShellElement {
+    /// Its kind.
+    pub fn kind(&self) -> ShellKind {
+        ShellKind::of(&self.nodes)
+    }
+
+    /// Displacements of its nodes, which are the first unknowns.
+    pub fn displacements(&self) -> usize {
+        3 * self.nodes.len()
+    }
 }
 
 /// An unknown rotation of a node. The axes of a node are orthogonal. If they are two, they are tangents.

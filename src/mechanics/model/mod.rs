@@ -16,6 +16,7 @@ pub mod mobility;
 pub mod reduced;
 pub mod rigid_body;
 pub mod shapes;
+pub mod shell_kind;
 pub mod table;
 pub mod time_function;
 

@@ -3,7 +3,7 @@
 use super::beam::BEAM_NODES;
 use super::lumped_mass::LumpedMass;
 use super::mesh::{Mesh, UnknownSet};
-use super::shell::{ElementMatrix, Motion, NODES, ShellCotangent, Terms};
+use super::shell::{ElementMatrix, Motion, ShellCotangent, ShellNodes, Terms};
 use super::state::{Configuration, Cotangent, NodalMotion};
 use super::structure::Structure;
 use super::supports::{NodeUnknowns, Rotations, Support, Unknowns};
@@ -220,7 +220,7 @@ fn neighbours(mesh: &Mesh) -> Vec<Vec<usize>> {
 }
 
 /// The unknowns of an element in the order of its matrix; `None` where fixed.
-fn element_unknowns(unknowns: &Unknowns, element: &[usize; NODES]) -> Vec<Option<usize>> {
+fn element_unknowns(unknowns: &Unknowns, element: &ShellNodes) -> Vec<Option<usize>> {
     let mut all = Vec::new();
     for &node in element {
         all.extend(unknowns.nodes[node].displacements);

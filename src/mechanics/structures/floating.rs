@@ -2,15 +2,15 @@
 //! with the coordinates.
 
 use super::assembly::Assembly;
-use super::mesh::{Mesh, UnknownSet};
-use super::shell::basis::TABLES;
+use super::mesh::{Edge, Mesh, UnknownSet};
+use super::shell::{ShellKind, ShellNodes};
 use super::state::Configuration;
 use super::structure::Structure;
 use super::supports::{NodeUnknowns, Rotations, Support, Tangents};
 use crate::math::{Mat3, Scalar, Vec3};
 use crate::model::element_operators::{Columns, Symmetric};
 use crate::model::finite::{
-    DISPLACEMENTS, ElementMesh, FiniteElements, NODES, QUADRATIC, Rotation, SQUARES, ShellElement,
+    ElementMesh, FiniteElements, NODES, QUADRATIC, Rotation, SQUARES, ShellElement,
 };
 use std::collections::BTreeMap;
 use std::sync::{Arc, OnceLock};
@@ -44,7 +44,7 @@ pub fn spans(nodes: &[Vec3<f64>], [o, b, c]: [usize; 3]) -> bool {
 const STRAIGHT: f64 = 1e-4;
 
 /// Whether the nodes of an edge lie on a line.
-pub fn is_straight(nodes: &[Vec3<f64>], edges: &[[usize; 3]]) -> bool {
+pub fn is_straight(nodes: &[Vec3<f64>], edges: &[Edge]) -> bool {
     let all: Vec<Vec3<f64>> = edges.iter().flatten().map(|&node| nodes[node]).collect();
     let Some(&first) = all.first() else {
         return true;
@@ -76,7 +76,8 @@ pub fn normal(mesh: &Mesh, nodes: &[Vec3<f64>], node: usize) -> Vec3<f64> {
             continue;
         };
         let tangent = |k: usize| {
-            let all = element.iter().zip(&TABLES.nodes[local].by[k]);
+            let by = &ShellKind::of(element).tables().nodes[local].by[k];
+            let all = element.iter().zip(by);
             all.fold(Vec3::zeros(), |sum: Vec3<f64>, (&b, n)| sum + nodes[b] * *n)
         };
         sum += tangent(0).cross(&tangent(1));
@@ -167,15 +168,16 @@ fn element(configuration: &Configuration<f64>, index: usize) -> ShellElement {
     }
     let mut shares = [[0.0; NODES]; NODES];
     let mut area = 0.0;
-    for (k, basis) in TABLES.gauss.iter().enumerate() {
+    for (k, basis) in shell.gauss() {
         let own = shell.area(k);
         area += own;
-        for a in 0..NODES {
-            for b in 0..NODES {
-                shares[a][b] += own * basis.n[a] * basis.n[b];
+        for (a, n) in basis.n.iter().enumerate() {
+            for (b, other) in basis.n.iter().enumerate() {
+                shares[a][b] += own * n * other;
             }
         }
     }
+    let displacements = 3 * nodes.len();
     let second = |points: &[Vec3<f64>]| {
         let mut sum = Mat3::zeros();
         for (a, x) in points.iter().enumerate() {
@@ -193,9 +195,9 @@ fn element(configuration: &Configuration<f64>, index: usize) -> ShellElement {
         shares,
         area,
         membrane: Columns::of(
-            (0..DISPLACEMENTS).map(|i| std::array::from_fn(|p| operators.membrane[p][i])),
+            (0..displacements).map(|i| std::array::from_fn(|p| operators.membrane[p][i])),
         ),
-        slopes: Columns::of((0..DISPLACEMENTS).map(|i| {
+        slopes: Columns::of((0..displacements).map(|i| {
             std::array::from_fn(|p| match p < QUADRATIC {
                 true => operators.slopes[p][0][i],
                 false => operators.slopes[p - QUADRATIC + SQUARES][1][i],
@@ -212,7 +214,7 @@ fn element(configuration: &Configuration<f64>, index: usize) -> ShellElement {
 }
 
 /// Node and axis of the rotations of an element, if they can follow any rotation of it.
-fn turns(configuration: &Configuration<f64>, nodes: &[usize; NODES]) -> Vec<Rotation> {
+fn turns(configuration: &Configuration<f64>, nodes: &ShellNodes) -> Vec<Rotation> {
     let mut all = Vec::new();
     for (node, &at) in nodes.iter().enumerate() {
         match configuration.unknowns.nodes[at].rotations {
@@ -309,7 +311,7 @@ impl Surface {
                 if on_beams[node] || configuration.smooth_director(node).is_none() {
                     continue;
                 }
-                let basis = &TABLES.nodes[local];
+                let basis = &ShellKind::of(element).tables().nodes[local];
                 let tangent = |k: usize| {
                     let all = element.iter().zip(&basis.by[k]);
                     all.fold(Vec3::zeros(), |sum: Vec3<f64>, (&b, n)| sum + nodes[b] * *n)
@@ -355,14 +357,22 @@ impl Surface {
         sum.finish(self.nodes[node])
     }
 
-    /// The motion of an edge as a whole: the mean displacement by Simpson's weights, and the rotation
+    /// The motion of an edge as a whole: the mean displacement by the weights of Simpson, or of the trapezoidal rule of two
+    /// nodes, and the rotation
     /// J⁻¹ Σ w r × u that fits the displacements u best, r from the middle, J = Σ w (r·r I − r rᵀ). A straight edge
     /// has no such rotation about its line: there it is the mean of the rotations.
-    pub fn edge(&self, edges: &[[usize; 3]]) -> PointMotion {
+    pub fn edge(&self, edges: &[Edge]) -> PointMotion {
         let mut weights: BTreeMap<usize, f64> = BTreeMap::new();
         for edge in edges {
-            let length = (self.nodes[edge[2]] - self.nodes[edge[0]]).norm();
-            for (&node, part) in edge.iter().zip([1.0, 4.0, 1.0]) {
+            let Some((&first, &last)) = edge.first().zip(edge.last()) else {
+                continue;
+            };
+            let length = (self.nodes[last] - self.nodes[first]).norm();
+            let parts: &[f64] = match edge.len() {
+                2 => &[3.0, 3.0],
+                _ => &[1.0, 4.0, 1.0],
+            };
+            for (&node, part) in edge.iter().zip(parts) {
                 *weights.entry(node).or_default() += part / 6.0 * length;
             }
         }

@@ -7,7 +7,7 @@ use super::inertia::{
 use super::loads::{Load, add_work_transpose};
 use super::mesh::UnknownSet;
 use super::reactions::{Reaction, State};
-use super::shell::{MassMoments, Motion, STRESS_POINTS, ShellCotangent, Terms};
+use super::shell::{MassMoments, Motion, STRESS_POINTS, ShellCotangent, ShellKind, Terms};
 use super::state::{Configuration, Cotangent, NodalMotion};
 use super::statics::StaticProblem;
 use super::structure::Structure;
@@ -97,7 +97,7 @@ pub struct Peak {
     pub case: usize,
     /// The shell.
     pub shell: usize,
-    /// Gauss point 3j + i of the shell.
+    /// Gauss point of the shell, 3j + i of nine nodes and 2j + i of four.
     pub point: usize,
     /// True at the face on the side of the normal.
     pub upper: bool,
@@ -216,7 +216,11 @@ impl<S: Scalar> Solved<'_, S> {
         let set = self.structure.topology.mesh.face_set(faces)?;
         let ratios = self.ratios(&self.configuration(), cases, set);
         let soft = SoftMax::new(&ratios, |_| S::one(), 1.0);
-        let (place, k) = (soft.peak / STRESS_POINTS, soft.peak % STRESS_POINTS);
+        let (mut place, mut k) = (0, soft.peak);
+        while k >= self.stress_points(set[place % set.len()]) {
+            k -= self.stress_points(set[place % set.len()]);
+            place += 1;
+        }
         Ok(Peak {
             ratio: soft.maximum,
             case: cases[place / set.len()],
@@ -224,6 +228,11 @@ impl<S: Scalar> Solved<'_, S> {
             point: k / 2,
             upper: k % 2 == 0,
         })
+    }
+
+    /// Number of places of a shell whose stress is evaluated.
+    fn stress_points(&self, shell: usize) -> usize {
+        ShellKind::of(&self.structure.topology.mesh.shells[shell]).stress_points()
     }
 
     /// Stress ratios case by case, shell by shell.
@@ -234,7 +243,8 @@ impl<S: Scalar> Solved<'_, S> {
             let motion = configuration.spread(&self.solutions[case]);
             for &index in set {
                 let v = motion.of_element(&shells[index]);
-                all.extend(configuration.shell(index).stress_ratios(&v, self.terms));
+                let ratios = configuration.shell(index).stress_ratios(&v, self.terms);
+                all.extend(&ratios[..self.stress_points(index)]);
             }
         }
         all
@@ -352,16 +362,20 @@ impl Solved<'_, f64> {
                         *w *= (g - value) * *rho + 1.0;
                     }
                 }
-                let mut chunks = weights.chunks_exact(STRESS_POINTS);
+                let mut rest = weights.as_slice();
                 for &case in cases {
                     let motion = motion(case);
-                    for (&index, chunk) in set.iter().zip(&mut chunks) {
+                    for &index in set {
+                        let (chunk, others) = rest.split_at(self.stress_points(index));
+                        rest = others;
+                        let mut bar = [0.0; STRESS_POINTS];
+                        bar[..chunk.len()].copy_from_slice(chunk);
                         let element = &mesh.shells[index];
                         let (mut force, mut part) = (Motion::zeros(), ShellCotangent::zeros());
                         configuration.shell(index).add_stress_ratios_transpose(
                             &motion.of_element(element),
                             self.terms,
-                            &std::array::from_fn(|k| chunk[k]),
+                            &bar,
                             &mut force,
                             &mut part,
                         );

@@ -4,10 +4,9 @@
 //! dual numbers its derivatives by structure and loads are those of ψ·f.
 
 use super::beam::BeamMotion;
-use super::mesh::UnknownSet;
+use super::mesh::{Edge, UnknownSet};
 use super::normal_moment;
-use super::shell::Motion;
-use super::shell::basis::{GAUSS_POINTS, TABLES};
+use super::shell::{Motion, ShellKind};
 use super::state::{Configuration, Cotangent, NodalMotion};
 use crate::math::{Scalar, Vec3, scalar::length};
 use std::collections::BTreeMap;
@@ -106,20 +105,27 @@ impl<S: Scalar> Load<S> {
     }
 }
 
-/// Shape functions of a three-node edge at its Gauss points, their slopes, and weights.
-fn edge_points() -> [([f64; 3], [f64; 3], f64); 3] {
+/// Shape functions of an edge at Gauss points, their slopes, and weights: of three nodes, or of the first two. The tangent
+/// of an edge of two nodes is constant.
+fn edge_points(edge: &Edge) -> [([f64; 3], [f64; 3], f64); 3] {
     let c = 0.6_f64.sqrt();
-    [(-c, 5.0 / 9.0), (0.0, 8.0 / 9.0), (c, 5.0 / 9.0)].map(|(x, weight)| {
-        let n = [0.5 * x * (x - 1.0), 1.0 - x * x, 0.5 * x * (x + 1.0)];
-        (n, [x - 0.5, -2.0 * x, x + 0.5], weight)
+    [(-c, 5.0 / 9.0), (0.0, 8.0 / 9.0), (c, 5.0 / 9.0)].map(|(x, weight)| match edge.len() {
+        2 => {
+            let n = [0.5 * (1.0 - x), 0.5 * (1.0 + x), 0.0];
+            (n, [-0.5, 0.5, 0.0], weight)
+        }
+        _ => {
+            let n = [0.5 * x * (x - 1.0), 1.0 - x * x, 0.5 * x * (x + 1.0)];
+            (n, [x - 0.5, -2.0 * x, x + 0.5], weight)
+        }
     })
 }
 
-/// ∫ N_a dl of the nodes of lines of three nodes \[m\].
-pub fn edge_shares(nodes: &[Vec3<f64>], edges: &[[usize; 3]]) -> BTreeMap<usize, f64> {
+/// ∫ N_a dl of the nodes of edges \[m\].
+pub fn edge_shares(nodes: &[Vec3<f64>], edges: &[Edge]) -> BTreeMap<usize, f64> {
     let mut shares = BTreeMap::new();
     for edge in edges {
-        for (n, slope, weight) in edge_points() {
+        for (n, slope, weight) in edge_points(edge) {
             let along = edge.iter().zip(&slope);
             let tangent = along.fold(Vec3::zeros(), |sum: Vec3<f64>, (&node, w)| {
                 sum + nodes[node] * *w
@@ -233,7 +239,7 @@ fn add_beam_transpose<S: Scalar>(
 
 fn add_edge_transpose<S: Scalar>(
     configuration: &Configuration<S>,
-    edge: &[usize; 3],
+    edge: &Edge,
     f: &Vec3<S>,
     motion: &NodalMotion<S>,
     force: &mut NodalMotion<S>,
@@ -247,7 +253,7 @@ fn add_edge_transpose<S: Scalar>(
                 sum + list[node] * S::from(w)
             })
     };
-    for (n, slope, weight) in edge_points() {
+    for (n, slope, weight) in edge_points(edge) {
         let tangent = sum(&slope, &configuration.structure.nodes);
         let speed = length(&tangent);
         let u = sum(&n, &motion.displacement);
@@ -270,8 +276,8 @@ fn add_pressure_transpose<S: Scalar>(
     p_to: &mut S,
 ) {
     let element = &configuration.structure.topology.mesh.shells[shell];
-    for k in 0..GAUSS_POINTS {
-        let (basis, weight) = (&TABLES.gauss[k], TABLES.weights[k]);
+    let tables = ShellKind::of(element).tables();
+    for (basis, &weight) in tables.gauss.iter().zip(&tables.weights) {
         let mut tangents = [Vec3::zeros(); 2];
         let mut u = Vec3::zeros();
         for (a, &node) in element.iter().enumerate() {
@@ -310,8 +316,7 @@ fn add_area_transpose<S: Scalar>(
     let element = &configuration.structure.topology.mesh.shells[shell];
     let (shape, motion) = (configuration.shell(shell), motion.of_element(element));
     let mut bar = super::shell::ShellCotangent::zeros();
-    for k in 0..GAUSS_POINTS {
-        let basis = &TABLES.gauss[k];
+    for (k, basis) in shape.gauss() {
         let u = displacement(&motion, &basis.n);
         let area = shape.area(k);
         *f_to += u * area;
@@ -336,8 +341,7 @@ fn add_gravity_transpose<S: Scalar>(
     let element = &configuration.structure.topology.mesh.shells[shell];
     let (shape, motion) = (configuration.shell(shell), motion.of_element(element));
     let mut bar = super::shell::ShellCotangent::zeros();
-    for k in 0..GAUSS_POINTS {
-        let basis = &TABLES.gauss[k];
+    for (k, basis) in shape.gauss() {
         let u = displacement(&motion, &basis.n);
         let area = shape.area(k);
         let mass = shape.mass_per_area();

@@ -3,25 +3,37 @@
 use std::collections::BTreeMap;
 
 use super::beam::BEAM_NODES;
-use super::shell::NODES;
+use super::shell::{ShellKind, ShellNodes};
+use crate::math::ArrayVec;
 
-/// Local nodes of the four edges of a shell element, along s = −1, r = +1, s = +1, r = −1.
-pub const SHELL_EDGES: [[usize; 3]; 4] = [[0, 1, 2], [2, 5, 8], [6, 7, 8], [0, 3, 6]];
+/// The nodes of an edge of a shell, in a row: three of MITC9, two of MITC4.
+pub type Edge = ArrayVec<usize, 3>;
 
-/// A mesh of nine-node shells and three-node beams. Node k = 3j + i of an element is at (r, s) = (i
-/// − 1, j − 1); the normal is a_r × a_s.
+/// The four edges of a shell, along s = −1, r = +1, s = +1, r = −1.
+pub fn shell_edges(nodes: &ShellNodes) -> [Edge; 4] {
+    let of = |edges: [[usize; 3]; 4], count: usize| {
+        edges.map(|edge| Edge::from_fn(count, |k| nodes[edge[k]]))
+    };
+    match ShellKind::of(nodes) {
+        ShellKind::Mitc9 => of([[0, 1, 2], [2, 5, 8], [6, 7, 8], [0, 3, 6]], 3),
+        ShellKind::Mitc4 => of([[0, 1, 0], [1, 3, 0], [2, 3, 0], [0, 2, 0]], 2),
+    }
+}
+
+/// A mesh of shells of nine or four nodes and three-node beams. The nodes of a shell are row by row along r, of which
+/// the next is at a larger s; the normal is a_r × a_s.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct Mesh {
     /// Number of nodes.
     pub nodes: usize,
     /// Nodes of each shell.
-    pub shells: Vec<[usize; NODES]>,
+    pub shells: Vec<ShellNodes>,
     /// Nodes of each beam: an end, the middle, the other end.
     pub beams: Vec<[usize; BEAM_NODES]>,
     /// Nodes by the name of their set.
     pub node_sets: BTreeMap<String, Vec<usize>>,
-    /// Edges (three nodes in a row) by the name of their set.
-    pub edge_sets: BTreeMap<String, Vec<[usize; 3]>>,
+    /// Edges by the name of their set.
+    pub edge_sets: BTreeMap<String, Vec<Edge>>,
     /// Shells by the name of their set.
     pub face_sets: BTreeMap<String, Vec<usize>>,
     /// Beams by the name of their set.
@@ -55,7 +67,7 @@ fn find<'a, T>(
 impl Mesh {
     /// The nodes of each element.
     pub fn elements(&self) -> impl Iterator<Item = &[usize]> {
-        let shells = self.shells.iter().map(|nodes| nodes.as_slice());
+        let shells = self.shells.iter().map(|nodes| &nodes[..]);
         shells.chain(self.beams.iter().map(|nodes| nodes.as_slice()))
     }
 
@@ -112,7 +124,7 @@ impl Mesh {
     ///
     /// # Errors
     /// [`UnknownSet`] if there is none of this name.
-    pub fn edge_set(&self, name: &str) -> Result<&[[usize; 3]], UnknownSet> {
+    pub fn edge_set(&self, name: &str) -> Result<&[Edge], UnknownSet> {
         find(&self.edge_sets, "set of edges", name)
     }
 

@@ -12,8 +12,8 @@
 
 use super::mesh::UnknownSet;
 use super::sheets::{corner_tangents, normal, unit_transpose};
-use super::shell::basis::TABLES;
 use super::shell::frame::{add_area_transpose, area};
+use super::shell::{ShellKind, ShellNodes};
 use super::state::{Configuration, Cotangent, NodalMotion};
 use super::structure::Structure;
 use super::supports::{NodeUnknowns, Normal, Rotations, Support, Unknowns, along_director};
@@ -33,10 +33,11 @@ pub fn along_normal(
     let order: Vec<usize> = (0..topology.mesh.nodes).collect();
     let unknowns = Unknowns::new(structure, supports, node_unknowns, &order)?;
     let directors = topology.sheets.directors(&topology.mesh, &structure.nodes);
-    let turns = topology.sheets.turns(&topology.mesh, &structure.nodes);
+    let sheets = &topology.sheets;
+    let errors = sheets.errors(&topology.mesh, &structure.nodes, &directors);
     let has_part = |node: &usize| {
         let director = directors[topology.sheets.of_node[*node].start];
-        moment.dot(&director).abs() > along_director(turns[*node]) * moment.norm()
+        moment.dot(&director).abs() > along_director(errors[*node]) * moment.norm()
     };
     let on_surface = |node: &usize| {
         matches!(
@@ -49,10 +50,10 @@ pub fn along_normal(
 }
 
 /// Displacements of an element by r and s at its local node.
-fn slopes<S: Scalar>(element: &[usize], local: usize, motion: &NodalMotion<S>) -> [Vec3<S>; 2] {
-    TABLES.nodes[local].by.map(|by| {
-        let nodes = element.iter().zip(by);
-        nodes.fold(Vec3::zeros(), |sum, (&node, w)| {
+fn slopes<S: Scalar>(element: &ShellNodes, local: usize, motion: &NodalMotion<S>) -> [Vec3<S>; 2] {
+    ShellKind::of(element).tables().nodes[local].by.map(|by| {
+        let nodes = element.iter().zip(&by);
+        nodes.fold(Vec3::zeros(), |sum, (&node, &w)| {
             sum + motion.displacement[node] * S::from(w)
         })
     })
@@ -101,7 +102,7 @@ pub(super) fn add_transpose<S: Scalar>(
             by_r * half + by_normal.cross(r),
         ];
         add_area_transpose(&tangents, -by_spin * own / size, &mut bar);
-        let by = &TABLES.nodes[local].by;
+        let by = &ShellKind::of(element).tables().nodes[local].by;
         for (b, &other) in element.iter().enumerate() {
             let (n_r, n_s) = (S::from(by[0][b]), S::from(by[1][b]));
             force.displacement[other] += s * (half * n_r) - r * (half * n_s);

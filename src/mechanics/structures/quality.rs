@@ -1,8 +1,8 @@
 //! Faults of a mesh: loose nodes, inverted or warped elements, mid nodes out of place.
 
-use super::mesh::{Mesh, SHELL_EDGES};
-use super::shell::NODES;
-use super::shell::basis::TABLES;
+use super::mesh::{Edge, Mesh, shell_edges};
+use super::shell::basis::Basis;
+use super::shell::{ShellKind, ShellNodes};
 use crate::math::Vec3;
 
 /// A fault of a mesh, with the number of the element or node.
@@ -140,7 +140,7 @@ pub fn faults(mesh: &Mesh, nodes: &[Vec3<f64>]) -> Vec<MeshFault> {
     }
     if all.is_empty() {
         for (shell, element) in mesh.shells.iter().enumerate() {
-            all.extend(shape(shell, &element.map(|k| nodes[k])));
+            all.extend(shape(shell, element, nodes));
         }
         for (beam, element) in mesh.beams.iter().enumerate() {
             all.extend(beam_shape(beam, &element.map(|k| nodes[k])));
@@ -181,11 +181,10 @@ fn connectivity(mesh: &Mesh) -> Vec<MeshFault> {
 
 /// Edges through which two elements run in the same direction.
 fn opposite_normals(mesh: &Mesh) -> Vec<MeshFault> {
-    // An element's boundary runs 0 → 2 → 8 → 6; its neighbour runs through the same edge backwards.
-    let mut seen: std::collections::HashMap<[usize; 3], Vec<usize>> = Default::default();
+    // An element's boundary runs along its edges in turn; its neighbour runs through the same edge backwards.
+    let mut seen: std::collections::HashMap<Edge, Vec<usize>> = Default::default();
     for (shell, element) in mesh.shells.iter().enumerate() {
-        for (k, edge) in SHELL_EDGES.iter().enumerate() {
-            let mut nodes = edge.map(|local| element[local]);
+        for (k, mut nodes) in shell_edges(element).into_iter().enumerate() {
             if k >= 2 {
                 nodes.reverse();
             }
@@ -209,20 +208,31 @@ fn opposite_normals(mesh: &Mesh) -> Vec<MeshFault> {
     all
 }
 
-fn shape(shell: usize, x: &[Vec3<f64>; NODES]) -> Option<MeshFault> {
-    let normal = |k: usize| {
-        let [r, s] = [0, 1]
-            .map(|d| -> Vec3<f64> { (0..NODES).map(|a| x[a] * TABLES.nodes[k].by[d][a]).sum() });
+fn shape(shell: usize, element: &ShellNodes, nodes: &[Vec3<f64>]) -> Option<MeshFault> {
+    let (kind, x) = (
+        ShellKind::of(element),
+        element.gather(Vec3::zeros(), |node| nodes[node]),
+    );
+    let normal = |basis: &Basis| {
+        let along = |by| -> Vec3<f64> {
+            let terms = x.iter().zip(by);
+            terms.map(|(x, n): (&Vec3<f64>, &f64)| x * *n).sum()
+        };
+        let [r, s] = basis.by.each_ref().map(along);
         (r.cross(&s), r.norm() * s.norm())
     };
-    let (centre, size) = normal(4);
+    let tables = kind.tables();
+    let (centre, size) = normal(&tables.middle);
     let flat = centre.norm() <= 1e-6 * size || size == 0.0;
-    for local in 0..NODES {
-        let (n, size) = normal(local);
+    for (local, basis) in tables.nodes.iter().enumerate() {
+        let (n, size) = normal(basis);
         let turned = n.dot(&centre) <= 80.0_f64.to_radians().cos() * n.norm() * centre.norm();
         if flat || turned || n.norm() <= 1e-6 * size {
             return Some(MeshFault::Inverted { shell, local });
         }
+    }
+    if kind == ShellKind::Mitc4 {
+        return None;
     }
     let rows = [
         [0, 1, 2],

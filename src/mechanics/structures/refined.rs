@@ -1,9 +1,7 @@
 //! Meshes of which every element is cut into smaller ones on its own geometry.
 
-use super::beam::BEAM_NODES;
-use super::mesh::{Mesh, SHELL_EDGES};
-use super::shell::NODES;
-use super::shell::basis::Basis;
+use super::mesh::{Edge, Mesh, shell_edges};
+use super::shell::{ShellKind, ShellNodes};
 use crate::math::Vec3;
 use std::collections::{BTreeMap, BTreeSet, HashMap};
 
@@ -31,16 +29,18 @@ pub fn refined(mesh: &Mesh, nodes: &[Vec3<f64>], cuts: usize) -> Refined {
     let mut parents = Vec::new();
     for (shell, element) in mesh.shells.iter().enumerate() {
         let points = grid.shell(element);
-        let wide = 2 * cuts + 1;
+        let order = ShellKind::of(element).order();
+        let (wide, row) = (order * cuts + 1, order + 1);
         for (j, i) in (0..cuts).flat_map(|j| (0..cuts).map(move |i| (j, i))) {
-            let point = |k: usize| points[(2 * j + k / 3) * wide + 2 * i + k % 3];
-            out.shells.push(std::array::from_fn(point));
+            let point = |k: usize| points[(order * j + k / row) * wide + order * i + k % row];
+            out.shells.push(ShellNodes::from_fn(row * row, point));
             parents.push(shell);
         }
     }
     for (beam, element) in mesh.beams.iter().enumerate() {
-        let points = grid.edge(element);
-        out.beams.extend(pieces(&points));
+        let points = grid.edge(&(*element).into());
+        let all = pieces(&points, 2).into_iter();
+        out.beams.extend(all.map(|own| [own[0], own[1], own[2]]));
         parents.extend(std::iter::repeat_n(mesh.shells.len() + beam, cuts));
     }
     let children = |own: &Vec<usize>, each: usize| -> Vec<usize> {
@@ -54,7 +54,9 @@ pub fn refined(mesh: &Mesh, nodes: &[Vec3<f64>], cuts: usize) -> Refined {
     out.face_sets = of_elements(&mesh.face_sets, cuts * cuts);
     out.beam_sets = of_elements(&mesh.beam_sets, cuts);
     for (name, edges) in &mesh.edge_sets {
-        let edges = edges.iter().flat_map(|edge| pieces(&grid.edge(edge)));
+        let edges = edges
+            .iter()
+            .flat_map(|edge| pieces(&grid.edge(edge), edge.len() - 1));
         out.edge_sets.insert(name.clone(), edges.collect());
     }
     for (name, own) in &mesh.node_sets {
@@ -73,11 +75,11 @@ pub fn refined(mesh: &Mesh, nodes: &[Vec3<f64>], cuts: usize) -> Refined {
     }
 }
 
-/// The three nodes of each piece of a line of points.
-fn pieces(points: &[usize]) -> Vec<[usize; BEAM_NODES]> {
-    let starts = (0..points.len() - 1).step_by(2);
+/// The nodes of each piece of a line of points, `order` steps long.
+fn pieces(points: &[usize], order: usize) -> Vec<Edge> {
+    let starts = (0..points.len() - 1).step_by(order);
     starts
-        .map(|k| [points[k], points[k + 1], points[k + 2]])
+        .map(|k| Edge::from_fn(order + 1, |i| points[k + i]))
         .collect()
 }
 
@@ -86,8 +88,8 @@ struct Grid {
     nodes: Vec<Vec3<f64>>,
     /// Of each new node: the nodes of the edge or of the shell on which it stands.
     carriers: Vec<Vec<usize>>,
-    /// New nodes on edges, by the ends of the edge, the smaller one first, its middle node, and their place.
-    on_edges: HashMap<([usize; 3], usize), usize>,
+    /// New nodes on edges, by the nodes of the edge, the smaller end first, and their place.
+    on_edges: HashMap<(Edge, usize), usize>,
 }
 
 impl Grid {
@@ -100,50 +102,60 @@ impl Grid {
     }
 
     /// The points of an edge or a beam from its first node to its last.
-    fn edge(&mut self, &[first, middle, last]: &[usize; 3]) -> Vec<usize> {
-        let steps = 2 * self.cuts;
-        let one = |t: usize| match t {
-            0 => first,
-            t if t == self.cuts => middle,
-            t if t == steps => last,
-            t => {
-                let (ends, from) = match first < last {
-                    true => ([first, middle, last], t),
-                    false => ([last, middle, first], steps - t),
-                };
-                if let Some(&node) = self.on_edges.get(&(ends, from)) {
-                    return node;
-                }
-                // Of an edge s = −1 the first three shape functions are those of a line.
-                let basis = Basis::at(self.coordinate(from), -1.0);
-                let node = self.add(&ends, &basis.n[..3]);
-                self.on_edges.insert((ends, from), node);
-                node
+    fn edge(&mut self, edge: &Edge) -> Vec<usize> {
+        let order = edge.len() - 1;
+        let kind = match order {
+            1 => ShellKind::Mitc4,
+            _ => ShellKind::Mitc9,
+        };
+        let steps = order * self.cuts;
+        let mut ends = *edge;
+        let forwards = edge[0] < edge[order];
+        if !forwards {
+            ends.reverse();
+        }
+        let one = |t: usize| {
+            if t.is_multiple_of(self.cuts) {
+                return edge[t / self.cuts];
             }
+            let from = if forwards { t } else { steps - t };
+            if let Some(&node) = self.on_edges.get(&(ends, from)) {
+                return node;
+            }
+            // Of an edge s = −1 the first shape functions are those of a line.
+            let basis = kind.basis(self.coordinate(from, order), -1.0);
+            let node = self.add(&ends, &basis.n[..=order]);
+            self.on_edges.insert((ends, from), node);
+            node
         };
         (0..=steps).map(one).collect()
     }
 
-    fn coordinate(&self, step: usize) -> f64 {
-        step as f64 / self.cuts as f64 - 1.0
+    /// From −1 to 1 along an edge.
+    fn coordinate(&self, step: usize, order: usize) -> f64 {
+        2.0 * step as f64 / (order * self.cuts) as f64 - 1.0
     }
 
     /// The points of a shell, row by row.
-    fn shell(&mut self, element: &[usize; NODES]) -> Vec<usize> {
-        let (cuts, wide) = (self.cuts, 2 * self.cuts + 1);
+    fn shell(&mut self, element: &ShellNodes) -> Vec<usize> {
+        let (cuts, kind) = (self.cuts, ShellKind::of(element));
+        let order = kind.order();
+        let (steps, wide) = (order * cuts, order * cuts + 1);
         let mut all = vec![usize::MAX; wide * wide];
-        for (k, edge) in SHELL_EDGES.iter().enumerate() {
-            let points = self.edge(&edge.map(|local| element[local]));
+        for (k, edge) in shell_edges(element).iter().enumerate() {
+            let points = self.edge(edge);
             for (t, point) in points.into_iter().enumerate() {
-                let (i, j) = [(t, 0), (2 * cuts, t), (t, 2 * cuts), (0, t)][k];
+                let (i, j) = [(t, 0), (steps, t), (t, steps), (0, t)][k];
                 all[j * wide + i] = point;
             }
         }
-        for (j, i) in (1..2 * cuts).flat_map(|j| (1..2 * cuts).map(move |i| (j, i))) {
+        for (j, i) in (1..steps).flat_map(|j| (1..steps).map(move |i| (j, i))) {
             all[j * wide + i] = match (i, j) {
-                (i, j) if i == cuts && j == cuts => element[NODES / 2],
+                // The node in the middle of nine.
+                (i, j) if i == cuts && j == cuts && order == 2 => element[4],
                 _ => {
-                    let basis = Basis::at(self.coordinate(i), self.coordinate(j));
+                    let at = [i, j].map(|step| self.coordinate(step, order));
+                    let basis = kind.basis(at[0], at[1]);
                     self.add(element, &basis.n)
                 }
             };

@@ -1,6 +1,8 @@
 //! From the unknowns to the motion of the nodes and of the elements, and back.
 
-use super::shell::{Field, Motion, NODES, RotationAxes, Shell, ShellCotangent, Terms};
+use super::shell::{
+    Field, Motion, RotationAxes, Shell, ShellCotangent, ShellKind, ShellNodes, Terms,
+};
 use super::structure::Structure;
 use super::supports::{NodeUnknowns, Normal, Rotations, Unknowns};
 use crate::math::{Scalar, Vec3};
@@ -46,15 +48,16 @@ impl<S: Scalar> NodalMotion<S> {
         }
     }
 
-    pub fn of_element(&self, element: &[usize; NODES]) -> Motion<S> {
+    pub fn of_element(&self, element: &ShellNodes) -> Motion<S> {
+        let all = |of: &[Vec3<S>]| element.gather(Vec3::zeros(), |node| of[node]);
         Motion {
-            displacement: element.map(|node| self.displacement[node]),
-            rotation: element.map(|node| self.rotation[node]),
+            displacement: all(&self.displacement),
+            rotation: all(&self.rotation),
         }
     }
 
     /// Transpose of [`NodalMotion::of_element`].
-    pub fn add_of_element_transpose(&mut self, element: &[usize; NODES], bar: &Motion<S>) {
+    pub fn add_of_element_transpose(&mut self, element: &ShellNodes, bar: &Motion<S>) {
         for (a, &node) in element.iter().enumerate() {
             self.displacement[node] += bar.displacement[a];
             self.rotation[node] += bar.rotation[a];
@@ -122,11 +125,15 @@ impl<'a, S: Scalar> Configuration<'a, S> {
 
     pub fn shell(&self, index: usize) -> Shell<S> {
         let (structure, topology) = (self.structure, &self.structure.topology);
-        let corners = &topology.sheets.corners[index];
+        let (element, corners) = (
+            &topology.mesh.shells[index],
+            &topology.sheets.corners[index],
+        );
         Shell {
+            kind: ShellKind::of(element),
             geometry: Field {
-                points: topology.mesh.shells[index].map(|node| structure.nodes[node]),
-                directors: corners.map(|corner| self.directors[corner]),
+                points: element.gather(Vec3::zeros(), |node| structure.nodes[node]),
+                directors: corners.gather(Vec3::zeros(), |corner| self.directors[corner]),
             },
             thickness: structure.thickness[index],
             material: structure.materials[topology.material[index]],
@@ -143,9 +150,13 @@ impl<'a, S: Scalar> Configuration<'a, S> {
         to: &mut Cotangent<S>,
     ) {
         let topology = &self.structure.topology;
-        for a in 0..NODES {
-            to.structure.nodes[topology.mesh.shells[index][a]] += bar.geometry.points[a];
-            to.directors[topology.sheets.corners[index][a]] += bar.geometry.directors[a];
+        let (element, corners) = (
+            &topology.mesh.shells[index],
+            &topology.sheets.corners[index],
+        );
+        for (a, (&node, &corner)) in element.iter().zip(corners).enumerate() {
+            to.structure.nodes[node] += bar.geometry.points[a];
+            to.directors[corner] += bar.geometry.directors[a];
         }
         to.structure.thickness[index] += bar.thickness;
         to.structure.surface_mass[index] += bar.surface_mass;

@@ -7,7 +7,7 @@ use super::lumped_mass::LumpedMass;
 use super::material::Material;
 use super::mesh::Mesh;
 use super::quality::{MeshFault, faults, orientation_faults};
-use super::sheets::{FOLD_ANGLE, Sheets};
+use super::sheets::Sheets;
 use crate::math::{Scalar, Vec3};
 
 /// Data of a structure that no design changes.
@@ -35,7 +35,7 @@ impl Topology {
         mass_nodes: Vec<usize>,
     ) -> Self {
         Self {
-            sheets: Sheets::new(&mesh, nodes, FOLD_ANGLE),
+            sheets: Sheets::new(&mesh, nodes),
             mesh,
             material,
             beam_material,

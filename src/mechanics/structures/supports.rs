@@ -24,14 +24,10 @@ use crate::math::{Scalar, Vec3};
 
 /// How well the axes of an input are known \[rad\].
 const ROUNDED: f64 = 1e-5;
-/// How well directors are known, as a part of the square of the angle that an element turns by. At the edge
-/// of a circular arc of elements of angle β they err by β³/32.
-const OF_TURN: f64 = 0.1;
-
 /// Sine of the angle below which an axis counts as along a director: where a surface ends at a plane of
 /// symmetry, its director lies in this plane only but for the error of the interpolated surface.
-pub(super) fn along_director(turn: f64) -> f64 {
-    ROUNDED + OF_TURN * turn * turn
+pub(super) fn along_director(error: f64) -> f64 {
+    ROUNDED + error
 }
 
 /// A support of the nodes of a set.
@@ -215,7 +211,8 @@ impl Unknowns {
         }
         let on_beams = topology.mesh.on_beams();
         let directors = topology.sheets.directors(&topology.mesh, &structure.nodes);
-        let turns = topology.sheets.turns(&topology.mesh, &structure.nodes);
+        let sheets = &topology.sheets;
+        let errors = sheets.errors(&topology.mesh, &structure.nodes, &directors);
         let mut all = Self {
             nodes: vec![
                 AtNode {
@@ -244,7 +241,7 @@ impl Unknowns {
             };
             at.rotations = match smooth_here {
                 true => {
-                    let along = along_director(turns[node]);
+                    let along = along_director(errors[node]);
                     smooth(&directors[sheets.start], along, rotations, free)
                 }
                 false => Rotations::Global(rotations.map(|fixed| !fixed)),

@@ -15,8 +15,8 @@
 //! its slope (tension along a slope: ⅛ N θ⁴), that of twist by the slope, that of bending by a third of the
 //! square of the twist.
 
-use super::shell::basis::{Basis, TABLES};
-use super::shell::{Motion, NODES, Shell, Terms};
+use super::shell::basis::Basis;
+use super::shell::{Motion, NODES, Shell, ShellKind, Terms};
 use super::state::NodalMotion;
 use super::statics::StaticProblem;
 use super::structure::Structure;
@@ -124,14 +124,14 @@ pub fn turned_line(size: f64, squares: [f64; 2], energies: [f64; 3]) -> TurnedPa
 }
 
 /// Means over the Gauss points of an element.
-pub fn at_points(of: impl Fn(&Basis) -> [f64; 2]) -> [f64; 2] {
-    let mut sum = [0.0; 2];
-    for basis in &TABLES.gauss {
+pub fn at_points(kind: ShellKind, of: impl Fn(&Basis) -> [f64; 2]) -> [f64; 2] {
+    let (mut sum, points) = ([0.0; 2], &kind.tables().gauss);
+    for basis in points {
         let own = of(basis);
         sum[0] += own[0];
         sum[1] += own[1];
     }
-    sum.map(|x| x / TABLES.gauss.len() as f64)
+    sum.map(|x| x / points.len() as f64)
 }
 
 /// Area of a shell, and its turned part.
@@ -142,11 +142,11 @@ fn shell(own: &Shell<f64>, motion: &Motion<f64>, terms: Terms) -> TurnedPart {
         all.fold(Vec3::zeros(), |sum, (x, &by)| sum + x * by)
     };
     let tangents = |basis: &Basis| [0, 1].map(|k| along(basis, k, &own.geometry.points));
-    let squares = at_points(|basis| {
+    let squares = at_points(own.kind, |basis| {
         let by = [0, 1].map(|k| along(basis, k, &motion.displacement));
         surface_turn(&tangents(basis), &by)
     });
-    let area = at_points(|basis| {
+    let area = at_points(own.kind, |basis| {
         let [r, s] = tangents(basis);
         [4.0 * r.cross(&s).norm(), 0.0]
     });

@@ -6,6 +6,7 @@ use crate::elements::{frame_nodes, prepare};
 use crate::finding::Finding;
 use crate::holds::nodes_of;
 use crate::parts::beams;
+use crate::parts::steps_along;
 use crate::placement::GROUND;
 use crate::pointer::{advice, join, keys};
 use crate::schema::elements::{ElementBasis, ElementFrame, Elements, Held};
@@ -192,6 +193,12 @@ impl Checker<'_> {
                 let found = "a stiffener of a mesh without directions x and y";
                 let expected = "a mesh of a generator, which has lines of nodes along them";
                 self.fault(Finding::new(&place, found, expected).of_key());
+            } else if steps_along(&elements.structure, stiffener.along)
+                .is_some_and(|steps| !steps.is_multiple_of(2))
+            {
+                let found = "a stiffener along an odd number of elements of four nodes";
+                let expected = "an even number, as each beam has the nodes of two of them";
+                self.fault(Finding::new(join(&place, "along"), found, expected));
             }
             self.sizes(&join(&place, "section"), &stiffener.section);
         }

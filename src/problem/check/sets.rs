@@ -64,7 +64,7 @@ impl Sets {
 impl Checker<'_> {
     /// No set has the name of one that the generator makes.
     pub(super) fn names_of_sets(&mut self, pointer: &str, structure: &Structure) {
-        let made = generated::<f64>(&structure.mesh, &[], 1).mesh;
+        let made = generated::<f64>(&structure.mesh, structure.shell_kind(), &[], 1).mesh;
         let is_made = |name: &String| {
             name == ALL
                 || made.node_sets.contains_key(name)

@@ -270,6 +270,11 @@ impl Checker<'_> {
             ("line_mass", structure.line_mass.is_some(), true),
             ("offset", structure.offset.is_some(), true),
         ];
+        if let (true, Some(_)) = (beams, structure.element) {
+            let found = "\"element\" of a mesh of beams";
+            let expected = "no such key, as only shells have one";
+            self.fault(Finding::new(join(pointer, "element"), found, expected).of_key());
+        }
         for (key, _, _) in there.iter().filter(|(_, there, of)| *there && *of != beams) {
             let (found, expected) = match beams {
                 true => (format!("\"{key}\" of a mesh of beams"), "a \"section\""),

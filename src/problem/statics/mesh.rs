@@ -7,6 +7,7 @@ use crate::schema::structures::{GmshMesh, Mesh as Written, Set, Structure};
 use crate::structures::generate::{self, Generated, GeneratedBeams};
 use crate::structures::mesh::Mesh;
 use crate::structures::refined::{Refined, refined};
+use crate::structures::shell::ShellKind;
 use indexmap::IndexMap;
 
 /// A mesh with its nodes \[m\]. Every element of the file may be cut into `cuts` along each direction.
@@ -33,19 +34,20 @@ pub fn element_count(mesh: &Written) -> usize {
 
 /// The mesh of a structure at the design `x`.
 pub fn part<S: Scalar>(structure: &Structure, x: &[S], cuts: usize) -> Part<S> {
-    let mut part = generated(&structure.mesh, x, cuts);
+    let kind = structure.shell_kind();
+    let mut part = generated(&structure.mesh, kind, x, cuts);
     if let Some(at) = &structure.at {
         let at = vector(at, x);
         part.nodes.iter_mut().for_each(|node| *node += at);
     }
     for (name, set) in &structure.sets {
-        add_set(&mut part, &structure.mesh, name, set, cuts);
+        add_set(&mut part, structure, name, set, cuts);
     }
     part
 }
 
 /// The mesh of a generator, without sets of the file.
-pub fn generated<S: Scalar>(mesh: &Written, x: &[S], cuts: usize) -> Part<S> {
+pub fn generated<S: Scalar>(mesh: &Written, kind: ShellKind, x: &[S], cuts: usize) -> Part<S> {
     let finer = |elements: &[usize; 2]| elements.map(|n| n * cuts);
     let angles = |angles: &[Quantity; 2]| angles.map(|angle| angle.get(x));
     match mesh {
@@ -55,17 +57,14 @@ pub fn generated<S: Scalar>(mesh: &Written, x: &[S], cuts: usize) -> Part<S> {
             elements,
         } => {
             let size = [length.get(x), width.get(x)];
-            of_panel(
-                generate::plate(size, finer(elements)),
-                elements,
-                false,
-                cuts,
-            )
+            let plate = generate::plate_of(kind, size, finer(elements));
+            of_panel(plate, (kind, elements), false, cuts)
         }
         Written::Panel { points, elements } => {
             let points: Vec<Vec3<S>> = points.iter().map(|p| vector(p, x)).collect();
-            let panel = generate::panel(finer(elements), false, |r, s| between(&points, r, s));
-            of_panel(panel, elements, false, cuts)
+            let place = |r: f64, s: f64| between(&points, r, s);
+            let panel = generate::panel_of(kind, finer(elements), false, place);
+            of_panel(panel, (kind, elements), false, cuts)
         }
         Written::CurvedPanel {
             radius,
@@ -73,17 +72,18 @@ pub fn generated<S: Scalar>(mesh: &Written, x: &[S], cuts: usize) -> Part<S> {
             angles: ends,
             elements,
         } => {
-            let (radius, length, ends) = (radius.get(x), length.get(x), angles(ends));
-            let panel = generate::curved_panel(radius, length, ends, finer(elements));
-            of_panel(panel, elements, false, cuts)
+            let sizes = (radius.get(x), length.get(x), angles(ends));
+            let panel = generate::curved_panel_of(kind, sizes, finer(elements));
+            of_panel(panel, (kind, elements), false, cuts)
         }
         Written::Cylinder {
             radius,
             length,
             elements,
         } => {
-            let panel = generate::cylinder(radius.get(x), length.get(x), finer(elements));
-            of_panel(panel, elements, true, cuts)
+            let sizes = (radius.get(x), length.get(x));
+            let panel = generate::cylinder_of(kind, sizes, finer(elements));
+            of_panel(panel, (kind, elements), true, cuts)
         }
         Written::StraightBeam {
             from,
@@ -159,11 +159,11 @@ fn between<S: Scalar>(points: &[Vec3<S>], r: f64, s: f64) -> Vec3<S> {
 
 fn of_panel<S: Scalar>(
     panel: Generated<S>,
-    &[nx, ny]: &[usize; 2],
+    (kind, &[nx, ny]): (ShellKind, &[usize; 2]),
     closed: bool,
     cuts: usize,
 ) -> Part<S> {
-    let columns = 2 * nx * cuts + usize::from(!closed);
+    let columns = kind.order() * nx * cuts + usize::from(!closed);
     let wide = nx * cuts;
     let elements = 0..wide * ny * cuts;
     let of_file =
@@ -241,16 +241,27 @@ fn frame<S: Scalar>(
     }
 }
 
-fn add_set<S: Scalar>(part: &mut Part<S>, mesh: &Written, name: &str, set: &Set, cuts: usize) {
+fn add_set<S: Scalar>(
+    part: &mut Part<S>,
+    structure: &Structure,
+    name: &str,
+    set: &Set,
+    cuts: usize,
+) {
+    let mesh = &structure.mesh;
     let panel = mesh.panel_elements();
     let count = element_count(mesh);
     match set {
         Set::Node { at: [r, s] } => {
-            let place = |t: f64, n: usize| (t * 2.0 * n as f64).round() as usize * cuts;
+            let order = match panel {
+                Some(_) => structure.shell_kind().order(),
+                None => 2,
+            };
+            let place = |t: f64, n: usize| (t * (order * n) as f64).round() as usize * cuts;
             let node = match panel {
                 Some([nx, ny]) => {
                     let closed = matches!(mesh, Written::Cylinder { .. });
-                    let columns = 2 * nx * cuts + usize::from(!closed);
+                    let columns = order * nx * cuts + usize::from(!closed);
                     place(*s, ny) * columns + place(*r, nx) % columns
                 }
                 None => place(*r, count),

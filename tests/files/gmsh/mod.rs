@@ -10,12 +10,12 @@ use std::fmt::Write;
 use std::path::Path;
 
 mod faults;
-mod plate;
+pub mod plate;
 
 use plate::{Format, PLAIN, plate, point};
 
 /// A problem beside files of these texts, or its faults.
-fn parsed(document: &Value, files: &[(&str, &str)]) -> Result<Problem, String> {
+pub fn parsed(document: &Value, files: &[(&str, &str)]) -> Result<Problem, String> {
     let folder = tempfile::tempdir().expect("a folder");
     for (name, text) in files {
         std::fs::write(folder.path().join(name), text).expect("a file");
@@ -24,7 +24,7 @@ fn parsed(document: &Value, files: &[(&str, &str)]) -> Result<Problem, String> {
     Problem::parse(&document.to_string(), &file, &[]).map_err(|faults| faults.to_string())
 }
 
-fn at_rest(mesh: Value) -> Value {
+pub fn at_rest(mesh: Value) -> Value {
     json!({
         "version": 1, "name": "plate",
         "materials": {"steel": {"young": 210e9, "poisson": 0.3, "density": 7850, "yield_stress": 2e8}},
@@ -49,14 +49,14 @@ fn at_rest(mesh: Value) -> Value {
     })
 }
 
-fn values(problem: &Problem) -> Vec<f64> {
+pub fn values(problem: &Problem) -> Vec<f64> {
     let at = Simulated::of(problem, &problem.start()).expect("an analysis");
     (0..problem.function_names.len())
         .map(|f| at.value(f))
         .collect()
 }
 
-fn assert_close(found: &[f64], expected: &[f64], part: f64, what: &str) {
+pub fn assert_close(found: &[f64], expected: &[f64], part: f64, what: &str) {
     assert_eq!(found.len(), expected.len());
     for (f, e) in found.iter().zip(expected) {
         assert!(
@@ -66,8 +66,8 @@ fn assert_close(found: &[f64], expected: &[f64], part: f64, what: &str) {
     }
 }
 
-const SIZE: [f64; 2] = [0.6, 0.3];
-const ELEMENTS: [usize; 2] = [4, 3];
+pub const SIZE: [f64; 2] = [0.6, 0.3];
+pub const ELEMENTS: [usize; 2] = [4, 3];
 
 #[test]
 fn every_format_gives_the_plate_of_the_generator() {

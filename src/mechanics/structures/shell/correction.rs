@@ -1,4 +1,4 @@
-//! The correction that lets distorted flat elements pass the patch test.
+//! The correction that lets distorted flat elements MITC9 pass the patch test.
 //!
 //! Tying changes the strains of a distorted element, and with them the forces of a constant strain.
 //! The mean of what it changed is added to the strains at all Gauss points,
@@ -21,11 +21,12 @@
 //!
 //! and a rotation has no mean. For flat elements ω vanishes.
 
-use super::basis::{COMPONENTS, GAUSS_POINTS, MIDDLE, NODES, TABLES, TYING_POINTS, component};
+use super::basis::{COMPONENTS, GAUSS_POINTS, NODES, TYING_POINTS, Tables, component};
 use super::field::{Field, add_sum_transpose, sum};
 use super::frame::Frame;
 use super::tying::{add_carry_transpose, carry};
 use crate::math::{Mat3, Scalar, Vec3, scalar::length};
+use crate::model::shell_kind::{PerNode, ShellKind};
 
 /// Vectors of the means k = 11, 22, 12: strains Σ_a strain_ka·u_a, curvatures
 /// Σ_a bending_ka·u_a + turning_ka·q_a.
@@ -50,8 +51,14 @@ impl<S: Scalar> Correction<S> {
 type Vectors<S> = [[Vec3<S>; NODES]; 3];
 type Tangents<S> = [Vec3<S>; 2];
 
+/// The shape functions of the kind of element that is corrected.
+fn tables() -> &'static Tables {
+    ShellKind::Mitc9.tables()
+}
+
 /// The element in the plane of its middle.
 struct Flat<S> {
+    tables: &'static Tables,
     normal: Vec3<S>,
     middle: Tangents<S>,
     tying: [Tangents<S>; TYING_POINTS],
@@ -60,7 +67,7 @@ struct Flat<S> {
     area: S,
 }
 
-fn tangents<S: Scalar>(by: &[[f64; NODES]; 2], nodes: &[Vec3<S>; NODES]) -> Tangents<S> {
+fn tangents<S: Scalar>(by: &[PerNode<f64>; 2], nodes: &[Vec3<S>; NODES]) -> Tangents<S> {
     [sum(&by[0], nodes), sum(&by[1], nodes)]
 }
 
@@ -83,21 +90,23 @@ fn add_strain_transpose<S: Scalar>(
 
 impl<S: Scalar> Flat<S> {
     fn new(nodes: &[Vec3<S>; NODES]) -> Self {
-        let middle = tangents(&TABLES.gauss[MIDDLE].by, nodes);
+        let tables = tables();
+        let middle = tangents(&tables.middle.by, nodes);
         let normal = middle[0].cross(&middle[1]);
         let normal = normal / length(&normal);
         let flatten = |by| tangents(by, nodes).map(|a| a - normal * normal.dot(&a));
-        let gauss = std::array::from_fn(|k| flatten(&TABLES.gauss[k].by));
+        let gauss = std::array::from_fn(|k| flatten(&tables.gauss[k].by));
         let mut area = S::zero();
         let frames = std::array::from_fn(|k| {
             let frame = Frame::of(&gauss[k], &middle[0]);
-            area += frame.area * TABLES.weights[k];
+            area += frame.area * tables.weights[k];
             frame
         });
         Self {
+            tables,
             normal,
             middle,
-            tying: std::array::from_fn(|p| flatten(&TABLES.tying[p].by)),
+            tying: std::array::from_fn(|p| flatten(&tables.tying[p].basis.by)),
             gauss,
             frames,
             area,
@@ -106,7 +115,7 @@ impl<S: Scalar> Flat<S> {
 
     /// Share of a Gauss point in the area.
     fn share(&self, k: usize) -> S {
-        self.frames[k].area * TABLES.weights[k] / self.area
+        self.frames[k].area * self.tables.weights[k] / self.area
     }
 }
 
@@ -239,19 +248,19 @@ fn flat_vectors<S: Scalar>(nodes: &[Vec3<S>; NODES]) -> Vectors<S> {
             let mut unit = [S::zero(); 3];
             unit[c] = flat.share(k);
             let covariant = flat.frames[k].strain_transpose(&unit);
-            add_carry_transpose(k, &covariant.map(|x| -x), &mut tied);
+            add_carry_transpose(&flat.tables.tied[k], &covariant.map(|x| -x), &mut tied);
             let mut by = [zero; 2];
             for (pair, &x) in COMPONENTS.into_iter().zip(&covariant) {
                 add_strain_transpose(&flat.gauss[k], pair, x, &mut by);
             }
-            for (basis, by) in TABLES.gauss[k].by.iter().zip(&by) {
+            for (basis, by) in flat.tables.gauss[k].by.iter().zip(&by) {
                 add_sum_transpose(basis, by, &mut vectors);
             }
         }
         for p in 0..TYING_POINTS {
             let mut by = [zero; 2];
             add_strain_transpose(&flat.tying[p], COMPONENTS[component(p)], tied[p], &mut by);
-            for (basis, by) in TABLES.tying[p].by.iter().zip(&by) {
+            for (basis, by) in flat.tables.tying[p].basis.by.iter().zip(&by) {
                 add_sum_transpose(basis, by, &mut vectors);
             }
         }
@@ -273,7 +282,7 @@ fn add_flat_vectors_transpose<S: Scalar>(
     // The correction is linear in a motion: its cotangent takes the place of one.
     for (c, bar) in bar.iter().enumerate() {
         let at_tying: [Tangents<S>; TYING_POINTS] =
-            std::array::from_fn(|p| tangents(&TABLES.tying[p].by, bar));
+            std::array::from_fn(|p| tangents(&flat.tables.tying[p].basis.by, bar));
         let tied: [S; TYING_POINTS] =
             std::array::from_fn(|p| strain(&flat.tying[p], &at_tying[p], COMPONENTS[component(p)]));
         let mut tied_bar = [S::zero(); TYING_POINTS];
@@ -281,8 +290,8 @@ fn add_flat_vectors_transpose<S: Scalar>(
         let mut changes = [S::zero(); GAUSS_POINTS];
         for k in 0..GAUSS_POINTS {
             let (frame, share) = (&flat.frames[k], flat.share(k));
-            let at = tangents(&TABLES.gauss[k].by, bar);
-            let carried = carry(k, &tied);
+            let at = tangents(&flat.tables.gauss[k].by, bar);
+            let carried = carry(&flat.tables.tied[k], &tied);
             let defect = [0, 1, 2].map(|i| strain(&flat.gauss[k], &at, COMPONENTS[i]) - carried[i]);
             changes[k] = frame.strain(&defect)[c];
             mean += changes[k] * share;
@@ -290,13 +299,13 @@ fn add_flat_vectors_transpose<S: Scalar>(
             unit[c] = share;
             frame.add_strain_frame_transpose(&defect, &unit, &mut frames_bar[k]);
             let covariant = frame.strain_transpose(&unit);
-            add_carry_transpose(k, &covariant.map(|x| -x), &mut tied_bar);
+            add_carry_transpose(&flat.tables.tied[k], &covariant.map(|x| -x), &mut tied_bar);
             for (pair, &x) in COMPONENTS.into_iter().zip(&covariant) {
                 add_strain_transpose(&at, pair, x, &mut gauss_bar[k]);
             }
         }
         for k in 0..GAUSS_POINTS {
-            frames_bar[k].area += (changes[k] - mean) * TABLES.weights[k] / flat.area;
+            frames_bar[k].area += (changes[k] - mean) * flat.tables.weights[k] / flat.area;
         }
         for p in 0..TYING_POINTS {
             let pair = COMPONENTS[component(p)];
@@ -315,8 +324,9 @@ fn add_flat_vectors_transpose<S: Scalar>(
         );
     }
     let mut normal_bar = Vec3::zeros();
-    let tying = TABLES.tying.iter().zip(&tying_bar);
-    for (basis, bars) in tying.chain(TABLES.gauss.iter().zip(&gauss_bar)) {
+    let tying = flat.tables.tying.iter().map(|own| &own.basis);
+    let tying = tying.zip(&tying_bar);
+    for (basis, bars) in tying.chain(flat.tables.gauss.iter().zip(&gauss_bar)) {
         let a = tangents(&basis.by, nodes);
         for d in 0..2 {
             let (along, work) = (flat.normal.dot(&a[d]), flat.normal.dot(&bars[d]));
@@ -329,6 +339,6 @@ fn add_flat_vectors_transpose<S: Scalar>(
     middle_bar[0] += flat.middle[1].cross(&product);
     middle_bar[1] += product.cross(&flat.middle[0]);
     for d in 0..2 {
-        add_sum_transpose(&TABLES.gauss[MIDDLE].by[d], &middle_bar[d], to);
+        add_sum_transpose(&flat.tables.middle.by[d], &middle_bar[d], to);
     }
 }

@@ -9,11 +9,12 @@
 //! whose infinitesimal part is a second motion ψ, the derivatives by geometry, thickness and
 //! material are those of ψ·f: what an adjoint needs.
 
-use super::basis::{GAUSS_POINTS, NODES, TABLES};
+use super::basis::{Basis, GAUSS_POINTS, NODES};
 use super::field::{Field, add_interpolate_transpose, add_sum_transpose, interpolate, sum};
 use super::frame;
 use super::strain::{Curvature, ElementStrain, Strain, Terms};
 use crate::math::{Scalar, Vec3};
+use crate::model::shell_kind::ShellKind;
 use crate::structures::material::Material;
 
 /// Shear correction factor.
@@ -24,6 +25,8 @@ pub const DRILLING: f64 = 1e-3;
 /// The numbers of an element.
 #[derive(Clone, Copy, Debug)]
 pub struct Shell<S> {
+    /// The kind of element.
+    pub kind: ShellKind,
     /// Nodes X_a \[m\] and directors D_a [-].
     pub geometry: Field<S>,
     /// Thickness h \[m\].
@@ -62,7 +65,7 @@ impl<S: Scalar> ShellCotangent<S> {
 }
 
 /// Displacements u_a \[m\] and rotations θ_a \[rad\] of the nodes, in global axes; or forces \[N\] and
-/// moments [N m].
+/// moments [N m]. Zero beyond the nodes of the element.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Motion<S> {
     /// u_a.
@@ -143,7 +146,7 @@ impl<S: Scalar> Shell<S> {
     /// The strain energy of a motion, by its parts \[J\].
     pub fn energy(&self, motion: &Motion<S>, terms: Terms) -> EnergyParts<S> {
         let field = motion.field(&self.geometry);
-        let strain = ElementStrain::new(&self.geometry, &field, terms, Curvature::Tied);
+        let strain = self.strain(&field, terms, Curvature::Tied);
         let (h, material) = (self.thickness, &self.material);
         let mut parts = EnergyParts {
             membrane: S::zero(),
@@ -151,7 +154,7 @@ impl<S: Scalar> Shell<S> {
             shear: S::zero(),
             drilling: S::zero(),
         };
-        for point in &strain.points {
+        for point in strain.points() {
             let work = |e: &[S; 3]| dot(e, &material.plane_stress(e)) * point.area * 0.5;
             parts.membrane += h * work(&point.membrane);
             parts.bending += h * h * h / 12.0 * work(&point.bending);
@@ -159,20 +162,34 @@ impl<S: Scalar> Shell<S> {
             parts.shear += shear * dot(&point.shear, &point.shear);
         }
         if self.drilling {
-            for k in 0..GAUSS_POINTS {
-                let turn = Drilling::new(self, motion, k);
-                parts.drilling += self.drilling_stiffness(&turn, k) * turn.angle * turn.angle * 0.5;
+            for point in self.points() {
+                let turn = Drilling::new(self, motion, point.0);
+                let stiffness = self.drilling_stiffness(&turn, point.1);
+                parts.drilling += stiffness * turn.angle * turn.angle * 0.5;
             }
         }
         parts
     }
 
+    /// Strains of a motion of points and directors.
+    pub(super) fn strain<'a>(
+        &'a self,
+        motion: &'a Field<S>,
+        terms: Terms,
+        curvature: Curvature,
+    ) -> ElementStrain<'a, S> {
+        ElementStrain::new(self.kind, (&self.geometry, motion), terms, curvature)
+    }
+
+    /// The shape functions at the Gauss points, and the weights of these.
+    pub(super) fn points(&self) -> impl Iterator<Item = (&'static Basis, f64)> {
+        let tables = self.kind.tables();
+        tables.gauss.iter().zip(tables.weights.iter().copied())
+    }
+
     /// α G h dA of a Gauss point.
-    fn drilling_stiffness(&self, turn: &Drilling<S>, point: usize) -> S {
-        self.material.shear_modulus()
-            * self.thickness
-            * turn.area
-            * (DRILLING * TABLES.weights[point])
+    fn drilling_stiffness(&self, turn: &Drilling<S>, weight: f64) -> S {
+        self.material.shear_modulus() * self.thickness * turn.area * (DRILLING * weight)
     }
 
     /// Adds the derivatives of the strain energy: by the motion (the internal force [N, N m]) to
@@ -185,12 +202,12 @@ impl<S: Scalar> Shell<S> {
         to: &mut ShellCotangent<S>,
     ) {
         let field = motion.field(&self.geometry);
-        let strain = ElementStrain::new(&self.geometry, &field, terms, Curvature::Tied);
+        let strain = self.strain(&field, terms, Curvature::Tied);
         let (h, material) = (self.thickness, &self.material);
         let cube = h * h * h / 12.0;
         let shear_modulus = material.shear_modulus();
         let mut bar = [Strain::zeros(); GAUSS_POINTS];
-        for (bar, point) in bar.iter_mut().zip(&strain.points) {
+        for (bar, point) in bar.iter_mut().zip(strain.points()) {
             let area = point.area;
             let (m, b) = (
                 material.plane_stress(&point.membrane),
@@ -216,8 +233,8 @@ impl<S: Scalar> Shell<S> {
         strain.add_transpose(&bar, &mut to.geometry, &mut motion_bar);
         motion.add_field_transpose(&self.geometry, &motion_bar, force, &mut to.geometry);
         if self.drilling {
-            for k in 0..GAUSS_POINTS {
-                self.add_drilling_transpose(motion, k, force, to);
+            for point in self.points() {
+                self.add_drilling_transpose(motion, point, force, to);
             }
         }
     }
@@ -225,19 +242,19 @@ impl<S: Scalar> Shell<S> {
     fn add_drilling_transpose(
         &self,
         motion: &Motion<S>,
-        point: usize,
+        (basis, weight): (&Basis, f64),
         force: &mut Motion<S>,
         to: &mut ShellCotangent<S>,
     ) {
-        let turn = Drilling::new(self, motion, point);
-        let stiffness = self.drilling_stiffness(&turn, point);
+        let turn = Drilling::new(self, motion, basis);
+        let stiffness = self.drilling_stiffness(&turn, weight);
         let half = turn.angle * turn.angle * 0.5;
         to.thickness += stiffness * half / self.thickness;
         let modulus = stiffness * half / self.material.shear_modulus();
         self.material
             .add_shear_modulus_transpose(modulus, &mut to.material);
         let area = stiffness * half / turn.area;
-        turn.add_transpose(stiffness * turn.angle, area, point, force, &mut to.geometry);
+        turn.add_transpose(stiffness * turn.angle, area, basis, force, &mut to.geometry);
     }
 }
 
@@ -255,8 +272,7 @@ pub struct Drilling<S> {
 }
 
 impl<S: Scalar> Drilling<S> {
-    fn new(shell: &Shell<S>, motion: &Motion<S>, point: usize) -> Self {
-        let basis = &TABLES.gauss[point];
+    fn new(shell: &Shell<S>, motion: &Motion<S>, basis: &Basis) -> Self {
         let tangents = interpolate(basis, &shell.geometry).by;
         let by = [0, 1].map(|k| sum(&basis.by[k], &motion.displacement));
         let rotation = sum(&basis.n, &motion.rotation);
@@ -277,11 +293,10 @@ impl<S: Scalar> Drilling<S> {
         &self,
         angle: S,
         area: S,
-        point: usize,
+        basis: &Basis,
         motion: &mut Motion<S>,
         geometry: &mut Field<S>,
     ) {
-        let basis = &TABLES.gauss[point];
         let [ar, as_] = &self.tangents;
         let bar = angle / self.area;
         let half = bar * 0.5;

@@ -7,7 +7,7 @@
 //!
 //! μ is the non-structural mass per area, in the middle surface.
 
-use super::basis::{GAUSS_POINTS, NODES, TABLES};
+use super::basis::{Basis, NODES};
 use super::energy::{Motion, Shell, ShellCotangent};
 use super::field::{AtPoint, Field, add_interpolate_transpose, add_sum_transpose, sum};
 use super::frame;
@@ -48,21 +48,34 @@ impl<S: Scalar> Shell<S> {
         self.add_per_area_transpose([bar, S::zero()], to);
     }
 
-    fn tangents(&self, point: usize) -> [Vec3<S>; 2] {
-        [0, 1].map(|k| sum(&TABLES.gauss[point].by[k], &self.geometry.points))
+    fn tangents(&self, basis: &Basis) -> [Vec3<S>; 2] {
+        [0, 1].map(|k| sum(&basis.by[k], &self.geometry.points))
     }
 
-    /// The area that a Gauss point stands for, weight times J \[m²\].
+    /// The area that Gauss point `point` stands for, weight times J \[m²\].
     pub fn area(&self, point: usize) -> S {
-        frame::area(&self.tangents(point)) * TABLES.weights[point]
+        let tables = self.kind.tables();
+        frame::area(&self.tangents(&tables.gauss[point])) * tables.weights[point]
     }
 
     /// Transpose of the derivative of [`Shell::area`].
     pub fn add_area_transpose(&self, point: usize, bar: S, to: &mut Field<S>) {
+        let tables = self.kind.tables();
+        let basis = &tables.gauss[point];
         let mut at = AtPoint::zeros();
-        let bar = bar * TABLES.weights[point];
-        frame::add_area_transpose(&self.tangents(point), bar, &mut at.by);
-        add_interpolate_transpose(&TABLES.gauss[point], &at, to);
+        let bar = bar * tables.weights[point];
+        frame::add_area_transpose(&self.tangents(basis), bar, &mut at.by);
+        add_interpolate_transpose(basis, &at, to);
+    }
+
+    /// The Gauss points with their shape functions.
+    pub fn gauss(&self) -> impl Iterator<Item = (usize, &'static Basis)> {
+        self.kind.tables().gauss.iter().enumerate()
+    }
+
+    /// Number of nodes.
+    pub(super) fn nodes(&self) -> usize {
+        self.kind.tables().nodes.len()
     }
 
     /// The scalar nodal masses m_ab and i_ab.
@@ -73,11 +86,11 @@ impl<S: Scalar> Shell<S> {
             rotary: zero,
         };
         let [mass, rotary] = self.per_area();
-        for k in 0..GAUSS_POINTS {
-            let (basis, area) = (&TABLES.gauss[k], self.area(k));
-            for a in 0..NODES {
-                for b in 0..NODES {
-                    let share = area * (basis.n[a] * basis.n[b]);
+        for (k, basis) in self.gauss() {
+            let area = self.area(k);
+            for (a, n) in basis.n.iter().enumerate() {
+                for (b, other) in basis.n.iter().enumerate() {
+                    let share = area * (n * other);
                     all.mass[a][b] += mass * share;
                     all.rotary[a][b] += rotary * share;
                 }
@@ -92,18 +105,19 @@ impl<S: Scalar> Shell<S> {
         let moved: [[Vec3<S>; 3]; NODES] = std::array::from_fn(|a| {
             axes.axes[a].map(|axis| axis.cross(&self.geometry.directors[a]))
         });
-        matrix.clear(3 * NODES + axes.total());
-        for a in 0..NODES {
+        let nodes = self.nodes();
+        matrix.clear(3 * nodes + axes.total(nodes));
+        for a in 0..nodes {
             for b in 0..=a {
                 for i in 0..3 {
                     matrix.rows[3 * a + i][3 * b + i] = masses.mass[a][b];
                 }
             }
         }
-        let mut row = 3 * NODES;
-        for a in 0..NODES {
+        let mut row = 3 * nodes;
+        for a in 0..nodes {
             for k in 0..axes.count[a] {
-                let mut column = 3 * NODES;
+                let mut column = 3 * nodes;
                 for b in 0..=a {
                     let count = if a == b { k + 1 } else { axes.count[b] };
                     for l in 0..count {
@@ -121,8 +135,7 @@ impl<S: Scalar> Shell<S> {
     pub fn kinetic_energy(&self, rates: &Motion<S>) -> S {
         let field = rates.field(&self.geometry);
         let [mass, rotary] = self.per_area();
-        (0..GAUSS_POINTS).fold(S::zero(), |energy, k| {
-            let basis = &TABLES.gauss[k];
+        self.gauss().fold(S::zero(), |energy, (k, basis)| {
             let (u, q) = (
                 sum(&basis.n, &field.points),
                 sum(&basis.n, &field.directors),
@@ -144,8 +157,7 @@ impl<S: Scalar> Shell<S> {
         let field = rates.field(&self.geometry);
         let [mass, rotary] = self.per_area();
         let mut bar = Field::zeros();
-        for k in 0..GAUSS_POINTS {
-            let basis = &TABLES.gauss[k];
+        for (k, basis) in self.gauss() {
             let (u, q) = (
                 sum(&basis.n, &field.points),
                 sum(&basis.n, &field.directors),
@@ -166,8 +178,8 @@ impl<S: Scalar> Shell<S> {
     pub fn mass_moments(&self) -> MassMoments<S> {
         let mut all = MassMoments::zeros();
         let mass = self.per_area()[0];
-        for k in 0..GAUSS_POINTS {
-            let x = sum(&TABLES.gauss[k].n, &self.geometry.points);
+        for (k, basis) in self.gauss() {
+            let x = sum(&basis.n, &self.geometry.points);
             all.add(mass * self.area(k), &x);
         }
         all
@@ -176,8 +188,7 @@ impl<S: Scalar> Shell<S> {
     /// Transpose of the derivative of [`Shell::mass_moments`].
     pub fn add_mass_moments_transpose(&self, bar: &MassMoments<S>, to: &mut ShellCotangent<S>) {
         let mass = self.per_area()[0];
-        for k in 0..GAUSS_POINTS {
-            let basis = &TABLES.gauss[k];
+        for (k, basis) in self.gauss() {
             let x = sum(&basis.n, &self.geometry.points);
             let area = self.area(k);
             let (by_mass, by_place) = bar.add_transpose(mass * area, &x);

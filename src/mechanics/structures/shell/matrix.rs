@@ -24,8 +24,9 @@ impl<S: Scalar> RotationAxes<S> {
         }
     }
 
-    pub(super) fn total(&self) -> usize {
-        self.count.iter().sum()
+    /// How many axes the first `nodes` nodes have.
+    pub(super) fn total(&self, nodes: usize) -> usize {
+        self.count[..nodes].iter().sum()
     }
 }
 

@@ -1,4 +1,4 @@
-//! The nine-node shell element MITC9 with von Karman's terms.
+//! The shell elements MITC9 of nine nodes and MITC4 of four, with von Karman's terms.
 
 pub mod basis;
 mod correction;
@@ -14,6 +14,7 @@ mod stress;
 mod tangent;
 mod tying;
 
+pub use crate::model::shell_kind::{PerNode, ShellKind, ShellNodes};
 pub use basis::NODES;
 pub use energy::{Motion, Shell, ShellCotangent};
 pub use field::Field;

@@ -1,6 +1,6 @@
 //! Dot-product tests: each linear map beside its transpose, ȳ·(A x) = x·(Aᵀ ȳ), by name.
 
-use super::basis::{GAUSS_POINTS, NODES, SHEAR_POINTS, TABLES, TYING_POINTS};
+use super::basis::{NODES, SHEAR_POINTS, TYING_POINTS, Tables};
 use super::field::{
     AtPoint, Field, add_interpolate_transpose, add_sum_transpose, interpolate, sum,
 };
@@ -8,7 +8,14 @@ use super::frame::Frame;
 use super::tying::{add_carry_shear_transpose, add_carry_transpose, carry, carry_shear};
 use super::{Motion, energy::Shell};
 use crate::math::Vec3;
+use crate::model::shell_kind::{PerNode, ShellKind};
 use crate::structures::material::Material;
+
+const KINDS: [ShellKind; 2] = [ShellKind::Mitc9, ShellKind::Mitc4];
+
+fn tables() -> [&'static Tables; 2] {
+    KINDS.map(ShellKind::tables)
+}
 
 /// Numbers in (−1, 1) that look random.
 struct Numbers(u64);
@@ -63,22 +70,25 @@ fn assert_same(forwards: f64, backwards: f64) {
 #[test]
 fn sum_and_its_transpose() {
     let mut numbers = Numbers(1);
-    let (weights, x) = (numbers.list(), numbers.field().points);
-    let bar = numbers.vector();
-    let mut to = [Vec3::zeros(); NODES];
-    add_sum_transpose(&weights, &bar, &mut to);
-    assert_same(bar.dot(&sum(&weights, &x)), dot_vectors(&to, &x));
+    for count in [9, 4] {
+        let x = numbers.field().points;
+        let weights = PerNode::from_fn(count, |_| numbers.next());
+        let bar = numbers.vector();
+        let mut to = [Vec3::zeros(); NODES];
+        add_sum_transpose(&weights, &bar, &mut to);
+        assert_same(bar.dot(&sum(&weights, &x)), dot_vectors(&to, &x));
+        assert!(to[count..].iter().all(|x| *x == Vec3::zeros()));
+    }
 }
 
 #[test]
 fn interpolate_and_its_transpose() {
     let mut numbers = Numbers(2);
-    for basis in TABLES
-        .tying
-        .iter()
-        .chain(&TABLES.gauss)
-        .chain(&TABLES.nodes)
-    {
+    let bases = tables().into_iter().flat_map(|tables| {
+        let tying = tables.tying.iter().map(|own| &own.basis);
+        tying.chain(&tables.gauss).chain(&tables.nodes)
+    });
+    for basis in bases {
         let x = numbers.field();
         let bar = AtPoint {
             by: std::array::from_fn(|_| numbers.vector()),
@@ -98,7 +108,7 @@ fn interpolate_and_its_transpose() {
 #[test]
 fn carry_and_its_transpose() {
     let mut numbers = Numbers(3);
-    for g in 0..GAUSS_POINTS {
+    for g in tables().into_iter().flat_map(|tables| &tables.tied) {
         let (x, bar) = (numbers.list::<TYING_POINTS>(), numbers.list::<3>());
         let mut to = [0.0; TYING_POINTS];
         add_carry_transpose(g, &bar, &mut to);
@@ -153,14 +163,21 @@ fn the_field_of_a_motion_and_its_transpose() {
 /// The bilinear form of the energy is symmetric: ψ·F(v) = v·F(ψ) for linear strains.
 #[test]
 fn the_linear_force_is_its_own_transpose() {
+    KINDS.into_iter().for_each(linear_force);
+}
+
+fn linear_force(kind: ShellKind) {
     let mut numbers = Numbers(6);
     let mut geometry = numbers.field();
-    for k in 0..NODES {
-        let (r, s) = ((k % 3) as f64 - 1.0, (k / 3) as f64 - 1.0);
+    let wide = kind.order() + 1;
+    for k in 0..wide * wide {
+        let place = |i: usize| 2.0 * i as f64 / kind.order() as f64 - 1.0;
+        let (r, s) = (place(k % wide), place(k / wide));
         geometry.points[k] = geometry.points[k] * 0.05 + Vec3::new(r, s, 0.1 * r * r);
         geometry.directors[k] = geometry.directors[k] * 0.05 + Vec3::new(-0.2 * r, 0.0, 1.0);
     }
     let shell = Shell {
+        kind,
         geometry,
         thickness: 0.3,
         material: Material {

@@ -10,11 +10,11 @@
 //!
 //! Each component is taken at the points where it is tied (`basis`) and carried to the Gauss
 //! points, there to the orthonormal frame; `correction` adds a mean to the linear membrane and bending
-//! strains. Stresses take the curvatures of the motion itself. Rotations may be as large as the von Karman
+//! strains of MITC9. Stresses take the curvatures of the motion itself. Rotations may be as large as the von Karman
 //! strain admits.
 
 use super::basis::{
-    COMPONENTS, GAUSS_POINTS, MIDDLE, NODES, SHEAR_POINTS, TABLES, TYING_POINTS, component,
+    Basis, COMPONENTS, GAUSS_POINTS, NODES, SHEAR_POINTS, TYING_POINTS, Tables, component,
 };
 use super::correction::{Correction, add_correction_transpose, correction};
 use super::field::{
@@ -23,6 +23,7 @@ use super::field::{
 use super::frame::Frame;
 use super::tying::{add_carry_shear_transpose, add_carry_transpose, carry, carry_shear};
 use crate::math::{Scalar, Vec3};
+use crate::model::shell_kind::ShellKind;
 
 /// Which terms of the strain are taken.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -173,6 +174,7 @@ impl<S: Scalar> TiedStrain<S> {
 
 /// The state of an element between [`ElementStrain::new`] and [`ElementStrain::add_transpose`].
 pub struct ElementStrain<'a, S> {
+    tables: &'static Tables,
     geometry: &'a Field<S>,
     motion: &'a Field<S>,
     terms: Terms,
@@ -182,27 +184,30 @@ pub struct ElementStrain<'a, S> {
     reference: Vec3<S>,
     tied: TiedStrain<S>,
     correction: Option<Correction<S>>,
-    /// The strains at the Gauss points.
-    pub points: [Strain<S>; GAUSS_POINTS],
+    /// The strains at the Gauss points; zero where the kind has none.
+    points: [Strain<S>; GAUSS_POINTS],
 }
 
 impl<'a, S: Scalar> ElementStrain<'a, S> {
     /// Strains of a motion of a geometry.
     pub fn new(
-        geometry: &'a Field<S>,
-        motion: &'a Field<S>,
+        kind: ShellKind,
+        (geometry, motion): (&'a Field<S>, &'a Field<S>),
         terms: Terms,
         curvature: Curvature,
     ) -> Self {
+        let tables = kind.tables();
+        let corrected = terms.patch_correction && tables.corrected;
         let mut all = Self {
+            tables,
             geometry,
             motion,
             terms,
             curvature,
             frames: [Frame::zeros(); GAUSS_POINTS],
-            reference: sum(&TABLES.gauss[MIDDLE].by[0], &geometry.points),
+            reference: sum(&tables.middle.by[0], &geometry.points),
             tied: TiedStrain::zeros(),
-            correction: terms.patch_correction.then(|| correction(geometry)),
+            correction: corrected.then(|| correction(geometry)),
             points: [Strain::zeros(); GAUSS_POINTS],
         };
         all.tie();
@@ -211,18 +216,26 @@ impl<'a, S: Scalar> ElementStrain<'a, S> {
         all
     }
 
+    /// The strains at the Gauss points.
+    pub fn points(&self) -> &[Strain<S>] {
+        &self.points[..self.tables.gauss.len()]
+    }
+
     /// Components at the tying points.
     fn tie(&mut self) {
-        for p in 0..TYING_POINTS {
-            let g = interpolate(&TABLES.tying[p], self.geometry);
-            let u = interpolate(&TABLES.tying[p], self.motion);
+        for point in &self.tables.tying {
+            let (p, basis) = (point.index, &point.basis);
+            let g = interpolate(basis, self.geometry);
+            let u = interpolate(basis, self.motion);
             let c = COMPONENTS[component(p)];
-            self.tied.membrane[p] = membrane(&g, &u, c);
-            self.tied.bending[p] = bending(&g, &u, c);
-            if self.terms.von_karman {
-                self.tied.quadratic[p] = membrane_quadratic(&g, &u, c);
+            if point.in_plane {
+                self.tied.membrane[p] = membrane(&g, &u, c);
+                self.tied.bending[p] = bending(&g, &u, c);
+                if self.terms.von_karman {
+                    self.tied.quadratic[p] = membrane_quadratic(&g, &u, c);
+                }
             }
-            if p < SHEAR_POINTS {
+            if point.shear {
                 self.tied.shear[p] = shear(&g, &u, c[0]);
             }
         }
@@ -230,11 +243,10 @@ impl<'a, S: Scalar> ElementStrain<'a, S> {
 
     /// Frames and areas of the Gauss points.
     fn measure_gauss_points(&mut self) {
-        for k in 0..GAUSS_POINTS {
-            let by = &TABLES.gauss[k].by;
+        for (k, Basis { by, .. }) in self.tables.gauss.iter().enumerate() {
             let tangents = [0, 1].map(|d| sum(&by[d], &self.geometry.points));
             self.frames[k] = Frame::of(&tangents, &self.reference);
-            self.points[k].area = self.frames[k].area * TABLES.weights[k];
+            self.points[k].area = self.frames[k].area * self.tables.weights[k];
         }
     }
 
@@ -287,10 +299,10 @@ impl<'a, S: Scalar> ElementStrain<'a, S> {
     /// Covariant curvatures at a Gauss point.
     fn curvatures(&self, k: usize) -> [S; 3] {
         match self.curvature {
-            Curvature::Tied => carry(k, &self.tied.bending),
+            Curvature::Tied => carry(&self.tables.tied[k], &self.tied.bending),
             Curvature::OfMotion => {
-                let g = interpolate(&TABLES.gauss[k], self.geometry);
-                let u = interpolate(&TABLES.gauss[k], self.motion);
+                let g = interpolate(&self.tables.gauss[k], self.geometry);
+                let u = interpolate(&self.tables.gauss[k], self.motion);
                 COMPONENTS.map(|c| bending(&g, &u, c))
             }
         }
@@ -304,22 +316,22 @@ impl<'a, S: Scalar> ElementStrain<'a, S> {
         geometry: &mut Field<S>,
         motion: &mut Field<S>,
     ) {
-        let g = interpolate(&TABLES.gauss[k], self.geometry);
-        let u = interpolate(&TABLES.gauss[k], self.motion);
+        let g = interpolate(&self.tables.gauss[k], self.geometry);
+        let u = interpolate(&self.tables.gauss[k], self.motion);
         let mut pair = Pair::zeros();
         for (c, &bar) in bar.iter().enumerate() {
             pair.add_bending_transpose(&g, &u, c, bar);
         }
-        add_interpolate_transpose(&TABLES.gauss[k], &pair.geometry, geometry);
-        add_interpolate_transpose(&TABLES.gauss[k], &pair.motion, motion);
+        add_interpolate_transpose(&self.tables.gauss[k], &pair.geometry, geometry);
+        add_interpolate_transpose(&self.tables.gauss[k], &pair.motion, motion);
     }
 
     /// Strains in the frames of the Gauss points.
     fn gather(&mut self) {
         let (total, mean) = (self.all_membrane(), self.mean());
-        for k in 0..GAUSS_POINTS {
+        for (k, tied) in self.tables.tied.iter().enumerate() {
             let frame = &self.frames[k];
-            let m = frame.strain(&carry(k, &total));
+            let m = frame.strain(&carry(tied, &total));
             let b = frame.strain(&self.curvatures(k));
             let point = &mut self.points[k];
             point.membrane = std::array::from_fn(|c| m[c] + mean[0][c]);
@@ -327,7 +339,7 @@ impl<'a, S: Scalar> ElementStrain<'a, S> {
                 Curvature::Tied => std::array::from_fn(|c| b[c] + mean[1][c]),
                 Curvature::OfMotion => b,
             };
-            point.shear = frame.shear(&carry_shear(k, &self.tied.shear));
+            point.shear = frame.shear(&carry_shear(tied, &self.tied.shear));
         }
     }
 
@@ -344,7 +356,8 @@ impl<'a, S: Scalar> ElementStrain<'a, S> {
         let mut tied = TiedStrain::zeros();
         let mut mean_bar = [[zero; 3]; 2];
         let mut reference_bar = Vec3::zeros();
-        for point in bar {
+        let count = self.tables.gauss.len();
+        for point in &bar[..count] {
             for c in 0..3 {
                 mean_bar[0][c] += point.membrane[c];
                 if self.curvature == Curvature::Tied {
@@ -352,32 +365,33 @@ impl<'a, S: Scalar> ElementStrain<'a, S> {
                 }
             }
         }
-        for k in 0..GAUSS_POINTS {
+        for k in 0..count {
             let (frame, point) = (&self.frames[k], &bar[k]);
+            let own = &self.tables.tied[k];
             let mut frame_bar = Frame::zeros();
-            frame.add_strain_frame_transpose(&carry(k, &total), &point.membrane, &mut frame_bar);
+            frame.add_strain_frame_transpose(&carry(own, &total), &point.membrane, &mut frame_bar);
             let curvatures = self.curvatures(k);
             frame.add_strain_frame_transpose(&curvatures, &point.bending, &mut frame_bar);
             frame.add_shear_frame_transpose(
-                &carry_shear(k, &self.tied.shear),
+                &carry_shear(own, &self.tied.shear),
                 &point.shear,
                 &mut frame_bar,
             );
             let m = frame.strain_transpose(&point.membrane);
-            add_carry_transpose(k, &m, &mut tied.membrane);
-            add_carry_transpose(k, &m, &mut tied.quadratic);
+            add_carry_transpose(own, &m, &mut tied.membrane);
+            add_carry_transpose(own, &m, &mut tied.quadratic);
             let b = frame.strain_transpose(&point.bending);
             match self.curvature {
-                Curvature::Tied => add_carry_transpose(k, &b, &mut tied.bending),
+                Curvature::Tied => add_carry_transpose(own, &b, &mut tied.bending),
                 Curvature::OfMotion => {
                     self.add_curvatures_of_motion_transpose(k, &b, geometry, motion);
                 }
             }
             let s = frame.shear_transpose(&point.shear);
-            add_carry_shear_transpose(k, &s, &mut tied.shear);
+            add_carry_shear_transpose(own, &s, &mut tied.shear);
 
-            frame_bar.area += point.area * TABLES.weights[k];
-            let basis = &TABLES.gauss[k];
+            frame_bar.area += point.area * self.tables.weights[k];
+            let basis = &self.tables.gauss[k];
             let tangents = [0, 1].map(|d| sum(&basis.by[d], &self.geometry.points));
             let mut tangents_bar = [Vec3::zeros(); 2];
             frame.add_of_transpose(
@@ -392,7 +406,7 @@ impl<'a, S: Scalar> ElementStrain<'a, S> {
             }
         }
         self.add_mean_transpose(&mean_bar, geometry, motion);
-        let middle = &TABLES.gauss[MIDDLE].by[0];
+        let middle = &self.tables.middle.by[0];
         add_sum_transpose(middle, &reference_bar, &mut geometry.points);
         self.add_tie_transpose(&tied, geometry, motion);
     }
@@ -404,21 +418,24 @@ impl<'a, S: Scalar> ElementStrain<'a, S> {
         geometry: &mut Field<S>,
         motion: &mut Field<S>,
     ) {
-        for p in 0..TYING_POINTS {
-            let g = interpolate(&TABLES.tying[p], self.geometry);
-            let u = interpolate(&TABLES.tying[p], self.motion);
+        for point in &self.tables.tying {
+            let (p, basis) = (point.index, &point.basis);
+            let g = interpolate(basis, self.geometry);
+            let u = interpolate(basis, self.motion);
             let c = component(p);
             let mut pair = Pair::zeros();
-            pair.add_membrane_transpose(&g, &u, c, bar.membrane[p]);
-            pair.add_bending_transpose(&g, &u, c, bar.bending[p]);
-            if self.terms.von_karman {
-                pair.add_quadratic_transpose(&g, &u, c, bar.quadratic[p]);
+            if point.in_plane {
+                pair.add_membrane_transpose(&g, &u, c, bar.membrane[p]);
+                pair.add_bending_transpose(&g, &u, c, bar.bending[p]);
+                if self.terms.von_karman {
+                    pair.add_quadratic_transpose(&g, &u, c, bar.quadratic[p]);
+                }
             }
-            if p < SHEAR_POINTS {
+            if point.shear {
                 pair.add_shear_transpose(&g, &u, COMPONENTS[c][0], bar.shear[p]);
             }
-            add_interpolate_transpose(&TABLES.tying[p], &pair.geometry, geometry);
-            add_interpolate_transpose(&TABLES.tying[p], &pair.motion, motion);
+            add_interpolate_transpose(basis, &pair.geometry, geometry);
+            add_interpolate_transpose(basis, &pair.motion, motion);
         }
     }
 }

@@ -4,19 +4,27 @@
 //! stress. Transverse shear stresses vanish at the faces. Curvatures κ are those of the motion, not the tied
 //! ones of the energy.
 
-use super::basis::{GAUSS_POINTS, MIDDLE, TABLES, TYING_POINTS};
+use super::basis::{GAUSS_POINTS, TYING_POINTS};
 use super::energy::{Motion, Shell, ShellCotangent};
 use super::field::{Field, sum};
 use super::frame::Frame;
 use super::strain::{Curvature, ElementStrain, Strain, Terms};
 use super::tying::carry;
 use crate::math::Scalar;
+use crate::model::shell_kind::ShellKind;
 use crate::structures::material::Material;
 
-/// Places of an element whose stress is evaluated: (Gauss point, face), the face z = +h/2 first.
+/// Places of an element whose stress is evaluated, at most: (Gauss point, face), the face z = +h/2 first.
 pub const STRESS_POINTS: usize = 2 * GAUSS_POINTS;
 
-/// Strains or curvatures at the Gauss points, three of each after one another.
+impl ShellKind {
+    /// Places whose stress is evaluated.
+    pub fn stress_points(self) -> usize {
+        2 * self.tables().gauss.len()
+    }
+}
+
+/// Strains or curvatures at the Gauss points, three of each after one another; zero where a kind has none.
 pub type AtGaussPoints<S> = [S; 3 * GAUSS_POINTS];
 
 /// Plane von Mises stress; its derivative at no stress counts as none.
@@ -109,45 +117,51 @@ pub fn pull_stress_ratios_of<S: Scalar>(
 /// Strains of the middle surface at the Gauss points by components at the tying points, and the mean that the
 /// correction adds.
 pub fn membrane_strains(
-    geometry: &Field<f64>,
+    (kind, geometry): (ShellKind, &Field<f64>),
     tied: &[f64; TYING_POINTS],
     mean: &[f64; 3],
 ) -> AtGaussPoints<f64> {
-    let reference = sum(&TABLES.gauss[MIDDLE].by[0], &geometry.points);
+    let tables = kind.tables();
+    let reference = sum(&tables.middle.by[0], &geometry.points);
     let mut out = [0.0; 3 * GAUSS_POINTS];
-    for (k, out) in out.as_chunks_mut::<3>().0.iter_mut().enumerate() {
-        let by = &TABLES.gauss[k].by;
-        let tangents = [0, 1].map(|d| sum(&by[d], &geometry.points));
-        let own = Frame::of(&tangents, &reference).strain(&carry(k, tied));
+    let points = tables.gauss.iter().zip(&tables.tied);
+    for ((basis, of_point), out) in points.zip(out.as_chunks_mut::<3>().0) {
+        let tangents = [0, 1].map(|d| sum(&basis.by[d], &geometry.points));
+        let own = Frame::of(&tangents, &reference).strain(&carry(of_point, tied));
         *out = std::array::from_fn(|c| own[c] + mean[c]);
     }
     out
 }
 
 /// Curvatures of a motion at the Gauss points, which stresses have.
-pub fn curvatures(geometry: &Field<f64>, motion: &Field<f64>) -> AtGaussPoints<f64> {
+pub fn curvatures(
+    (kind, geometry): (ShellKind, &Field<f64>),
+    motion: &Field<f64>,
+) -> AtGaussPoints<f64> {
     let terms = Terms {
         von_karman: false,
         patch_correction: false,
     };
-    let strain = ElementStrain::new(geometry, motion, terms, Curvature::OfMotion);
-    std::array::from_fn(|i| strain.points[i / 3].bending[i % 3])
+    let strain = ElementStrain::new(kind, (geometry, motion), terms, Curvature::OfMotion);
+    flat(&strain)[1]
 }
 
 /// Strains of the middle surface and curvatures of an element.
 fn flat<S: Scalar>(strain: &ElementStrain<S>) -> [AtGaussPoints<S>; 2] {
-    let points = &strain.points;
-    [
-        std::array::from_fn(|i| points[i / 3].membrane[i % 3]),
-        std::array::from_fn(|i| points[i / 3].bending[i % 3]),
-    ]
+    let mut all = [[S::zero(); 3 * GAUSS_POINTS]; 2];
+    for (k, point) in strain.points().iter().enumerate() {
+        all[0][3 * k..][..3].copy_from_slice(&point.membrane);
+        all[1][3 * k..][..3].copy_from_slice(&point.bending);
+    }
+    all
 }
 
 impl<S: Scalar> Shell<S> {
-    /// σ_v / σ_yield at the Gauss points, face +h/2 and face −h/2 of each after one another.
+    /// σ_v / σ_yield at the Gauss points, face +h/2 and face −h/2 of each after one another, and zeros where the kind
+    /// has none.
     pub fn stress_ratios(&self, motion: &Motion<S>, terms: Terms) -> [S; STRESS_POINTS] {
         let field = motion.field(&self.geometry);
-        let strain = ElementStrain::new(&self.geometry, &field, terms, Curvature::OfMotion);
+        let strain = self.strain(&field, terms, Curvature::OfMotion);
         let [membrane, curvature] = flat(&strain);
         stress_ratios_of(&self.material, self.thickness, (&membrane, &curvature))
     }
@@ -163,7 +177,7 @@ impl<S: Scalar> Shell<S> {
         to: &mut ShellCotangent<S>,
     ) {
         let field = motion.field(&self.geometry);
-        let strain = ElementStrain::new(&self.geometry, &field, terms, Curvature::OfMotion);
+        let strain = self.strain(&field, terms, Curvature::OfMotion);
         let [membrane, curvature] = flat(&strain);
         let of = (&membrane, &curvature);
         let by = pull_stress_ratios_of(&self.material, self.thickness, of, bar);

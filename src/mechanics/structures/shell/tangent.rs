@@ -1,7 +1,7 @@
 //! The tangent stiffness of an element, in closed form.
 //!
-//! The energy is quadratic in parameters of strain: 16 tied membrane components and the 3 of the
-//! patch correction, as many of bending, and 12 of shear,
+//! The energy is quadratic in parameters of strain: of MITC9 16 tied membrane components and the 3 of the
+//! patch correction, as many of bending, and 12 of shear; of MITC4 8, as many, and 4,
 //!
 //! ```text
 //! U = ½ eᵀ K_m e + ½ kᵀ K_b k + ½ γᵀ K_s γ,   K_m = Σ_g dA h P_gᵀ C P_g and so on,
@@ -12,9 +12,7 @@
 //! with B_p = b_p + ½ (g1_p (g2_p·v) + g2_p (g1_p·v)). The columns are the displacements u_a and the
 //! unknowns φ of the rotations: θ_a = Σ_k axis_k φ_k, so the director moves by axis_k × D_a.
 
-use super::basis::{
-    COMPONENTS, GAUSS_POINTS, MIDDLE, NODES, SHEAR_POINTS, TABLES, TYING_POINTS, component,
-};
+use super::basis::{COMPONENTS, NODES, SHEAR_POINTS, TYING_POINTS, component};
 use super::correction::correction;
 use super::energy::{DRILLING, Motion, SHEAR_FACTOR, Shell};
 use super::field::{AtPoint, Field, add_interpolate_transpose, interpolate, sum};
@@ -23,9 +21,9 @@ use super::matrix::{ElementMatrix, MOST_UNKNOWNS, RotationAxes};
 use super::strain::Terms;
 use crate::math::{Scalar, Vec3};
 
-/// Strain parameters of membrane and of bending.
+/// Strain parameters of membrane and of bending, at most; those that a kind does not have are zero.
 const PARAMETERS: usize = TYING_POINTS + 3;
-/// Displacements of the nodes.
+/// Displacements of the nodes, at most.
 const DISPLACEMENTS: usize = 3 * NODES;
 
 /// Rows of one kind of strain.
@@ -35,24 +33,32 @@ type Rows<S, const N: usize> = [[S; MOST_UNKNOWNS]; N];
 struct Columns<S> {
     moved: [[Vec3<S>; 3]; NODES],
     count: [usize; NODES],
+    nodes: usize,
     total: usize,
 }
 
 impl<S: Scalar> Columns<S> {
-    fn new(axes: &RotationAxes<S>, geometry: &Field<S>) -> Self {
-        let moved = std::array::from_fn(|a| axes.axes[a].map(|x| x.cross(&geometry.directors[a])));
+    fn new(axes: &RotationAxes<S>, shell: &Shell<S>) -> Self {
+        let (directors, nodes) = (&shell.geometry.directors, shell.nodes());
+        let moved = std::array::from_fn(|a| axes.axes[a].map(|x| x.cross(&directors[a])));
         Self {
             moved,
             count: axes.count,
-            total: DISPLACEMENTS + axes.total(),
+            nodes,
+            total: 3 * nodes + axes.total(nodes),
         }
+    }
+
+    /// Displacements of the nodes, which come first.
+    fn displacements(&self) -> usize {
+        3 * self.nodes
     }
 
     /// Writes the row whose product with (u, q) is that of `field`.
     #[inline]
     fn write(&self, field: &Field<S>, row: &mut [S; MOST_UNKNOWNS]) {
-        let mut at = DISPLACEMENTS;
-        for a in 0..NODES {
+        let mut at = self.displacements();
+        for a in 0..self.nodes {
             for i in 0..3 {
                 row[3 * a + i] = field.points[a][i];
             }
@@ -125,7 +131,7 @@ impl Shell<f64> {
     pub fn operators(&self, axes: &RotationAxes<f64>) -> Operators {
         let mut unit = *self;
         (unit.thickness, unit.material.young) = (1.0, 1.0);
-        let columns = Columns::new(axes, &unit.geometry);
+        let columns = Columns::new(axes, &unit);
         let all = unit.parameters(&columns, None, Terms::VON_KARMAN);
         let mut matrix = ElementMatrix::new();
         let n = columns.total;
@@ -143,17 +149,21 @@ impl Shell<f64> {
             let scaled = multiply(&all.shear_stiffness, &all.shear, 1.0, n);
             matrix.add_products(&all.shear, &scaled, n);
         });
-        let slopes = (0..TYING_POINTS).map(|p| {
-            let basis = &TABLES.tying[p];
+        let mut slopes = vec![[[0.0; DISPLACEMENTS]; 2]; TYING_POINTS];
+        for point in self.kind.tables().tying.iter().filter(|own| own.in_plane) {
+            let basis = &point.basis;
             let d = sum(&basis.n, &unit.geometry.directors);
-            let slope = |k: usize| std::array::from_fn(|i| d[i % 3] * basis.by[k][i / 3]);
-            COMPONENTS[component(p)].map(slope)
-        });
+            let slope = |k: usize| {
+                let by = basis.by[k].places();
+                std::array::from_fn(|i| d[i % 3] * by[i / 3])
+            };
+            slopes[point.index] = COMPONENTS[component(point.index)].map(slope);
+        }
         Operators {
             membrane: (all.membrane.iter())
                 .map(|row| std::array::from_fn(|i| row[i]))
                 .collect(),
-            slopes: slopes.collect(),
+            slopes,
             plane: std::array::from_fn(|p| std::array::from_fn(|q| all.plane[p.max(q)][p.min(q)])),
             linear: [bending, shear],
         }
@@ -169,14 +179,15 @@ impl<S: Scalar> Shell<S> {
         terms: Terms,
         matrix: &mut ElementMatrix<S>,
     ) {
-        let columns = Columns::new(axes, &self.geometry);
+        let columns = Columns::new(axes, self);
         let state = terms.von_karman.then(|| motion.field(&self.geometry));
         let all = self.parameters(&columns, state.as_ref(), terms);
         matrix.clear(columns.total);
         let h = self.thickness;
         let cube = h * h * h / 12.0;
-        let scaled = multiply(&all.plane, &all.membrane, h, DISPLACEMENTS);
-        matrix.add_products(&all.membrane, &scaled, DISPLACEMENTS);
+        let displacements = columns.displacements();
+        let scaled = multiply(&all.plane, &all.membrane, h, displacements);
+        matrix.add_products(&all.membrane, &scaled, displacements);
         let scaled = multiply(&all.plane, &all.bending, cube, columns.total);
         matrix.add_products(&all.bending, &scaled, columns.total);
         let scaled = multiply(&all.shear_stiffness, &all.shear, S::one(), columns.total);
@@ -204,8 +215,8 @@ impl<S: Scalar> Shell<S> {
             shear_stiffness: [[zero; SHEAR_POINTS]; SHEAR_POINTS],
             strain: [zero; PARAMETERS],
         };
-        for p in 0..TYING_POINTS {
-            let basis = &TABLES.tying[p];
+        for point in &self.kind.tables().tying {
+            let (p, basis) = (point.index, &point.basis);
             let g = interpolate(basis, &self.geometry);
             let u = state.map(|state| interpolate(basis, state));
             let pair = COMPONENTS[component(p)];
@@ -214,17 +225,20 @@ impl<S: Scalar> Shell<S> {
                 add_interpolate_transpose(basis, gradient, &mut field);
                 columns.write(&field, row);
             };
-            if let Some(u) = &u {
-                let [a, b] = pair;
-                let quadratic = g.director.dot(&u.by[a]) * g.director.dot(&u.by[b]);
-                all.strain[p] = (g.by[a].dot(&u.by[b]) + g.by[b].dot(&u.by[a]) + quadratic) * 0.5;
+            if point.in_plane {
+                if let Some(u) = &u {
+                    let [a, b] = pair;
+                    let quadratic = g.director.dot(&u.by[a]) * g.director.dot(&u.by[b]);
+                    all.strain[p] =
+                        (g.by[a].dot(&u.by[b]) + g.by[b].dot(&u.by[a]) + quadratic) * 0.5;
+                }
+                write(
+                    &membrane_gradient(&g, u.as_ref(), pair),
+                    &mut all.membrane[p],
+                );
+                write(&bending_gradient(&g, pair), &mut all.bending[p]);
             }
-            write(
-                &membrane_gradient(&g, u.as_ref(), pair),
-                &mut all.membrane[p],
-            );
-            write(&bending_gradient(&g, pair), &mut all.bending[p]);
-            if p < SHEAR_POINTS {
+            if point.shear {
                 let mut gradient = AtPoint::zeros();
                 gradient.director = g.by[pair[0]];
                 gradient.by[pair[0]] = g.director;
@@ -243,17 +257,18 @@ impl<S: Scalar> Shell<S> {
         terms: Terms,
         all: &mut Parameters<S>,
     ) {
-        let reference = sum(&TABLES.gauss[MIDDLE].by[0], &self.geometry.points);
+        let tables = self.kind.tables();
+        let reference = sum(&tables.middle.by[0], &self.geometry.points);
         let shear = self.material.shear_modulus() * self.thickness * SHEAR_FACTOR;
-        for (k, tied) in TABLES.tied.iter().enumerate() {
-            let by = &TABLES.gauss[k].by;
+        for (k, tied) in tables.tied.iter().enumerate() {
+            let by = &tables.gauss[k].by;
             let tangents = [0, 1].map(|d| sum(&by[d], &self.geometry.points));
             let frame = Frame::of(&tangents, &reference);
-            let area = frame.area * TABLES.weights[k];
+            let area = frame.area * tables.weights[k];
             add_plane(&frame, &self.material, area, tied, &mut all.plane);
             add_shear(&frame, shear * area, tied, &mut all.shear_stiffness);
         }
-        if terms.patch_correction {
+        if terms.patch_correction && tables.corrected {
             self.add_correction(columns, state, all);
         }
     }
@@ -282,16 +297,16 @@ impl<S: Scalar> Shell<S> {
 
     /// Σ_p n_p sym(g1_p g2_pᵀ): d dᵀ times products of slopes of the shape functions.
     fn add_geometric(&self, all: &Parameters<S>, matrix: &mut ElementMatrix<S>) {
-        for p in 0..TYING_POINTS {
+        for point in self.kind.tables().tying.iter().filter(|own| own.in_plane) {
+            let (p, basis) = (point.index, &point.basis);
             let force = (0..PARAMETERS).fold(S::zero(), |sum, q| {
                 sum + all.plane[p.max(q)][p.min(q)] * all.strain[q]
             }) * self.thickness;
-            let basis = &TABLES.tying[p];
             let d = sum(&basis.n, &self.geometry.directors);
             let [r, s] = COMPONENTS[component(p)].map(|k| &basis.by[k]);
             let outer: [[S; 3]; 3] =
                 std::array::from_fn(|i| std::array::from_fn(|j| d[i] * d[j] * force));
-            for a in 0..NODES {
+            for a in 0..basis.n.len() {
                 for b in 0..=a {
                     let slope = 0.5 * (r[a] * s[b] + r[b] * s[a]);
                     for i in 0..3 {
@@ -313,13 +328,12 @@ impl<S: Scalar> Shell<S> {
     ) {
         let stiffness = self.material.shear_modulus() * self.thickness * DRILLING;
         let mut row = [S::zero(); MOST_UNKNOWNS];
-        for k in 0..GAUSS_POINTS {
-            let basis = &TABLES.gauss[k];
+        for (basis, weight) in self.points() {
             let [ar, as_] = interpolate(basis, &self.geometry).by;
             let normal = ar.cross(&as_);
             let area = frame::area(&[ar, as_]);
-            let mut at = DISPLACEMENTS;
-            for a in 0..NODES {
+            let mut at = columns.displacements();
+            for a in 0..columns.nodes {
                 for i in 0..3 {
                     row[3 * a + i] =
                         (ar[i] * basis.by[1][a] - as_[i] * basis.by[0][a]) * 0.5 / area;
@@ -329,7 +343,7 @@ impl<S: Scalar> Shell<S> {
                     at += 1;
                 }
             }
-            let weight = stiffness * area * TABLES.weights[k];
+            let weight = stiffness * area * weight;
             let mut scaled = row;
             for x in &mut scaled {
                 *x *= weight;
@@ -340,7 +354,7 @@ impl<S: Scalar> Shell<S> {
 }
 
 /// Adds dA P_gᵀ C P_g, lower part. P_g has few columns that are not empty: those of the tying
-/// points that the Gauss point takes, and the three of the correction.
+/// points that the Gauss point takes, and the three of the correction. Those without weight are left out.
 fn add_plane<S: Scalar>(
     frame: &Frame<S>,
     material: &crate::structures::material::Material<S>,
@@ -353,7 +367,7 @@ fn add_plane<S: Scalar>(
     let lists: [(usize, &[(usize, f64)]); 3] = [(0, &tied.rr), (1, &tied.ss), (2, &tied.rs)];
     let mut at = 0;
     for (c, list) in lists {
-        for &(p, w) in list {
+        for &(p, w) in list.iter().filter(|(_, w)| *w != 0.0) {
             let mut covariant = [zero; 3];
             covariant[c] = S::from(w);
             columns[at] = (p, frame.strain(&covariant));
@@ -366,9 +380,10 @@ fn add_plane<S: Scalar>(
         columns[at] = (TYING_POINTS + c, unit);
         at += 1;
     }
-    for (p, strain) in &columns {
+    let columns = &columns[..at];
+    for (p, strain) in columns {
         let stress = material.plane_stress(strain).map(|x| x * area);
-        for (q, other) in &columns {
+        for (q, other) in columns {
             if q <= p {
                 to[*p][*q] += stress[0] * other[0] + stress[1] * other[1] + stress[2] * other[2];
             }
@@ -384,9 +399,10 @@ fn add_shear<S: Scalar>(
 ) {
     let zero = S::zero();
     let mut columns = [(0_usize, [zero; 2]); 4];
+    let [along_r, along_s] = &tied.shear;
     for k in 0..2 {
-        columns[k] = (tied.rr[k].0, frame.shear(&[S::from(tied.rr[k].1), zero]));
-        columns[2 + k] = (tied.ss[k].0, frame.shear(&[zero, S::from(tied.ss[k].1)]));
+        columns[k] = (along_r[k].0, frame.shear(&[S::from(along_r[k].1), zero]));
+        columns[2 + k] = (along_s[k].0, frame.shear(&[zero, S::from(along_s[k].1)]));
     }
     for (p, strain) in &columns {
         for (q, other) in &columns {

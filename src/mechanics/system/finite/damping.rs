@@ -71,8 +71,8 @@ pub(super) fn matrices<S: Scalar>(
     // P ∂e/∂u and P ∂ė/∂u.
     let [scaled, scaled_rates] =
         [&own, &turned].map(|all| all.map(|column| stresses(element, &column).map(|n| n * thin)));
-    add_products((&own, &scaled), true, n, &mut in_r);
-    add_products((&own, &scaled_rates), false, n, &mut in_x);
+    add_products(element, (&own, &scaled), true, &mut in_r);
+    add_products(element, (&own, &scaled_rates), false, &mut in_x);
     let stress = stresses(element, &strained.along(element, &r)).map(|n| n * thin);
     add_curvature(element, &stress, n, &mut in_x);
     let weights = per_area(finite, i).map(|weight| alpha * weight);

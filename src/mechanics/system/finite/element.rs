@@ -1,15 +1,21 @@
 //! From the coordinates of a body to the unknowns and points of an element, and back.
 
 use crate::math::{Mat3, Scalar, Vec3};
-use crate::model::finite::{DISPLACEMENTS, FiniteElements, NODES, POINTS, ShellElement, UNKNOWNS};
+use crate::model::finite::{FiniteElements, NODES, POINTS, ShellElement, UNKNOWNS};
+use crate::model::shell_kind::ShellKind;
 
 /// Unknowns of an element, or forces on them.
 pub type Local<S> = [S; UNKNOWNS];
 /// A vector for each point of an element.
 pub(super) type Points<S> = [Vec3<S>; POINTS];
 
-/// The node in the middle.
-const MIDDLE: usize = 4;
+/// The node in the middle, or of four nodes the first.
+fn middle(element: &ShellElement) -> usize {
+    match element.kind() {
+        ShellKind::Mitc9 => 4,
+        ShellKind::Mitc4 => 0,
+    }
+}
 
 /// A constant vector in another scalar.
 pub fn lift<S: Scalar>(v: &Vec3<f64>) -> Vec3<S> {
@@ -31,7 +37,7 @@ pub fn gather<S: Scalar>(element: &ShellElement, q: &[S]) -> Local<S> {
 pub(super) struct Deformed<S> {
     /// All of the motion.
     pub all: Local<S>,
-    /// It without the rigid motion of the node in the middle; without its translation alone if not all nodes can turn.
+    /// It without the rigid motion of the node in the middle (of four nodes, of the first); without its translation alone if not all nodes can turn.
     ///
     /// Matrices that no rigid motion stresses have the same products with both. The round-off with this is smaller,
     /// because it is relative to what deforms the element.
@@ -53,25 +59,26 @@ impl<S: Scalar> Deformed<S> {
 }
 
 fn deformation<S: Scalar>(element: &ShellElement, x: &Local<S>) -> Local<S> {
+    let (middle, count) = (middle(element), element.displacements());
     let mut theta = Vec3::<S>::zeros();
-    for (turn, &x) in element.turns.iter().zip(&x[DISPLACEMENTS..]) {
-        if turn.node == MIDDLE {
+    for (turn, &x) in element.turns.iter().zip(&x[count..]) {
+        if turn.node == middle {
             (0..3).for_each(|k| theta[k] += x * turn.axis[k]);
         }
     }
     let mut out = *x;
-    for (a, place) in element.points[..NODES].iter().enumerate() {
-        let arm = place - element.points[MIDDLE];
+    for (a, place) in element.points[..element.nodes.len()].iter().enumerate() {
+        let arm = place - element.points[middle];
         let moved = [
             theta[1] * arm[2] - theta[2] * arm[1],
             theta[2] * arm[0] - theta[0] * arm[2],
             theta[0] * arm[1] - theta[1] * arm[0],
         ];
         for (k, moved) in moved.into_iter().enumerate() {
-            out[3 * a + k] = (x[3 * a + k] - x[3 * MIDDLE + k]) - moved;
+            out[3 * a + k] = (x[3 * a + k] - x[3 * middle + k]) - moved;
         }
     }
-    for (turn, out) in element.turns.iter().zip(&mut out[DISPLACEMENTS..]) {
+    for (turn, out) in element.turns.iter().zip(&mut out[count..]) {
         let by = &turn.inverse;
         *out -= theta[0] * by[0] + theta[1] * by[1] + theta[2] * by[2];
     }
@@ -90,10 +97,11 @@ pub(super) fn scatter<S: Scalar>(element: &ShellElement, x: &Local<S>, out: &mut
 /// How unknowns, or their rates, move the points.
 pub fn motion<S: Scalar>(element: &ShellElement, x: &Local<S>) -> Points<S> {
     let mut out = [Vec3::zeros(); POINTS];
-    for (l, &x) in x.iter().enumerate().take(DISPLACEMENTS) {
+    let count = element.displacements();
+    for (l, &x) in x.iter().enumerate().take(count) {
         out[l / 3][l % 3] = x;
     }
-    for (&x, (point, along)) in x.iter().zip(&element.moves).skip(DISPLACEMENTS) {
+    for (&x, (point, along)) in x.iter().zip(&element.moves).skip(count) {
         for k in 0..3 {
             out[*point][k] += x * along[k];
         }
@@ -104,10 +112,11 @@ pub fn motion<S: Scalar>(element: &ShellElement, x: &Local<S>) -> Points<S> {
 /// Transpose of [`motion`].
 pub(super) fn motion_transpose<S: Scalar>(element: &ShellElement, by: &Points<S>) -> Local<S> {
     let mut out = [S::zero(); UNKNOWNS];
-    for (l, out) in out.iter_mut().enumerate().take(DISPLACEMENTS) {
+    let count = element.displacements();
+    for (l, out) in out.iter_mut().enumerate().take(count) {
         *out = by[l / 3][l % 3];
     }
-    for (out, (point, along)) in out.iter_mut().zip(&element.moves).skip(DISPLACEMENTS) {
+    for (out, (point, along)) in out.iter_mut().zip(&element.moves).skip(count) {
         let by = &by[*point];
         *out = by[0] * along[0] + by[1] * along[1] + by[2] * along[2];
     }
@@ -149,14 +158,22 @@ pub(super) fn pull_per_area(
 
 /// Σ_l A_kl x_l: positions with positions, directors with directors.
 pub(super) fn share<S: Scalar>(element: &ShellElement, x: &Points<S>) -> Points<S> {
+    match element.kind() {
+        ShellKind::Mitc9 => share_of::<S, NODES>(element, x),
+        ShellKind::Mitc4 => share_of::<S, 4>(element, x),
+    }
+}
+
+/// [`share`] of N nodes.
+fn share_of<S: Scalar, const N: usize>(element: &ShellElement, x: &Points<S>) -> Points<S> {
     let mut out = [Vec3::zeros(); POINTS];
     for kind in [0, NODES] {
-        for (a, row) in element.shares.iter().enumerate() {
-            let out = &mut out[kind + a];
-            for (b, &share) in row.iter().enumerate() {
+        for a in 0..N {
+            let (row, out) = (&element.shares[a], &mut out[kind + a]);
+            for b in 0..N {
                 let x = &x[kind + b];
                 for k in 0..3 {
-                    out[k] += x[k] * share;
+                    out[k] += x[k] * row[b];
                 }
             }
         }

@@ -10,7 +10,7 @@ use super::stiffness::tangent;
 use crate::linalg::Emit;
 use crate::math::scalar::skew;
 use crate::math::{Mat3, Scalar, Vec3};
-use crate::model::finite::{DISPLACEMENTS, FiniteElements, NODES, ShellElement};
+use crate::model::finite::{FiniteElements, NODES, ShellElement};
 use crate::system::flexing::{Flexing, axial};
 
 /// Columns and rows that couple the frame with the coordinates, each a vector of three, and the block of
@@ -95,10 +95,10 @@ fn emit_masses<S: Scalar>(
     emit: &mut dyn Emit<S>,
 ) {
     for axis in 0..3 {
-        let along: [usize; NODES] = std::array::from_fn(|a| 3 * a + axis);
+        let along: Vec<usize> = (0..element.nodes.len()).map(|a| 3 * a + axis).collect();
         emit_element((element, slots), &along, at, scale, positions, emit);
     }
-    let turning: Vec<usize> = (DISPLACEMENTS..element.moves.len()).collect();
+    let turning: Vec<usize> = (element.displacements()..element.moves.len()).collect();
     emit_element((element, slots), &turning, at, scale, directors, emit);
 }
 
@@ -111,9 +111,9 @@ fn emit_parts<S: Scalar>(
     (positions, directors): (&[S], &[S]),
     emit: &mut dyn Emit<S>,
 ) {
-    let moving: [usize; DISPLACEMENTS] = std::array::from_fn(|k| k);
+    let moving: Vec<usize> = (0..element.displacements()).collect();
     emit_element((element, slots), &moving, at, scale, positions, emit);
-    let turning: Vec<usize> = (DISPLACEMENTS..element.moves.len()).collect();
+    let turning: Vec<usize> = (element.displacements()..element.moves.len()).collect();
     emit_element((element, slots), &turning, at, scale, directors, emit);
 }
 
@@ -123,7 +123,7 @@ fn of_directors<S: Scalar>(
     weight: S,
     turn: impl Fn(&Vec3<f64>) -> Vec3<S>,
 ) -> Vec<S> {
-    let moves = &element.moves[DISPLACEMENTS..];
+    let moves = &element.moves[element.displacements()..];
     let turned: Vec<Vec3<S>> = moves.iter().map(|(_, along)| turn(along)).collect();
     let mut out = Vec::with_capacity(moves.len() * moves.len());
     for (a, along) in moves {
@@ -136,10 +136,16 @@ fn of_directors<S: Scalar>(
     out
 }
 
-/// The matrix w A_ab M of positions, 27 × 27.
+/// A_ab of the nodes that the element has, by rows.
+fn shares(element: &ShellElement) -> impl Iterator<Item = &[f64]> {
+    let count = element.nodes.len();
+    element.shares[..count].iter().map(move |row| &row[..count])
+}
+
+/// The matrix w A_ab M of positions.
 fn of_positions<S: Scalar>(element: &ShellElement, weight: S, turn: &Mat3<S>) -> Vec<S> {
-    let mut out = Vec::with_capacity(DISPLACEMENTS * DISPLACEMENTS);
-    for shares in &element.shares {
+    let mut out = Vec::with_capacity(element.displacements() * element.displacements());
+    for shares in shares(element) {
         for i in 0..3 {
             for &share in shares {
                 let by = weight * share;
@@ -181,7 +187,8 @@ pub fn emit_mass<S: Scalar>(
             }
             frame.columns[1][*j] += weighed[*point].cross(&c);
         }
-        let positions: Vec<S> = (element.shares.as_flattened().iter())
+        let positions: Vec<S> = shares(element)
+            .flatten()
             .map(|&share| weights[0] * share)
             .collect();
         let directors = of_directors(element, weights[1], lift);
@@ -217,9 +224,10 @@ pub fn emit_diagonal<S: Scalar>(
             emit_element((element, slots), which, (0, 0), S::one(), &block, emit);
         };
         for axis in 0..3 {
-            emit_some(&std::array::from_fn::<_, NODES, _>(|a| 3 * a + axis));
+            let along: Vec<usize> = (0..element.nodes.len()).map(|a| 3 * a + axis).collect();
+            emit_some(&along);
         }
-        let turning: Vec<usize> = (DISPLACEMENTS..element.moves.len()).collect();
+        let turning: Vec<usize> = (element.displacements()..element.moves.len()).collect();
         emit_some(&turning);
     }
     Frame::zero(finite.mesh.coordinates).emit(slots, (0, 0), S::one(), emit);
@@ -355,9 +363,9 @@ impl<S: Scalar> OfElement<S> {
         tangent(finite, i, &x, &mut stiffness);
         let turned = of_positions(element, weights[0], &b);
         let of_directors_turned = of_directors(element, weights[1], |along| b * lift::<S>(along));
-        let (upper, lower) = stiffness.split_at_mut(DISPLACEMENTS * n);
+        let (upper, lower) = stiffness.split_at_mut(element.displacements() * n);
         add_part(upper, &turned, (n, 0));
-        add_part(lower, &of_directors_turned, (n, DISPLACEMENTS));
+        add_part(lower, &of_directors_turned, (n, element.displacements()));
         let factors = finite.damping;
         Self {
             weighed: weigh(element, weights, &place),

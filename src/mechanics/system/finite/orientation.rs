@@ -4,7 +4,7 @@ use super::parts::{all, gather};
 use super::stiffness::split_energy;
 use crate::math::{Scalar, Vec3, scalar::lift3};
 use crate::model::finite::{FiniteElements, ShellElement};
-use crate::structures::shell::basis::{Basis, TABLES};
+use crate::structures::shell::basis::Basis;
 use crate::structures::turned::{Turned, at_points, surface_turn, turned_line, turned_shell};
 
 /// Tangents of the surface of an element at a point without deformation, and how displacements change them.
@@ -43,14 +43,15 @@ pub fn inside_out<S: Scalar>(finite: &FiniteElements<S>, q: &[S]) -> Option<usiz
         let after = (r + by_r).cross(&(s + by_s));
         r.cross(&s).dot(&after).re() <= 0.0
     };
-    (finite.mesh.elements.iter()).position(|own| TABLES.gauss.iter().any(|g| turned(own, g)))
+    let points = |own: &ShellElement| &own.kind().tables().gauss;
+    (finite.mesh.elements.iter()).position(|own| points(own).iter().any(|g| turned(own, g)))
 }
 
 /// How far the elements of a body are turned, for values `q` of the unknowns of nodes. Beams come after shells.
 pub fn turned(finite: &FiniteElements<f64>, q: &[f64]) -> Turned {
     let mut sum = Turned::default();
     for (i, own) in finite.mesh.elements.iter().enumerate() {
-        let squares = at_points(|basis| {
+        let squares = at_points(own.kind(), |basis| {
             let [along, by] = tangents(finite, own, q, basis);
             surface_turn(&along, &by)
         });

@@ -10,7 +10,7 @@ use crate::model::finite::{
 };
 use std::ops::Mul;
 
-/// Derivatives of the strains by the displacements, by columns.
+/// Derivatives of the strains by the displacements, by columns; zero beyond those that the element has.
 pub(super) type Gradients<S> = [[S; STRAINS]; DISPLACEMENTS];
 
 /// Membrane strains of an element, and its slopes.
@@ -274,19 +274,20 @@ pub fn pull_forces(
     parts::pull_forces(finite, (q, psi), by_q, cot);
 }
 
-/// Adds Gᵀ H for two matrices by columns to the displacements' part of a matrix of order n; what stands right of
+/// Adds Gᵀ H for two matrices by columns to the displacements' part of a matrix of the unknowns of an element; what stands right of
 /// the diagonal is taken from the left if `symmetric`.
 pub(super) fn add_products<S: Scalar>(
+    element: &ShellElement,
     (left, right): (&Gradients<S>, &Gradients<S>),
     symmetric: bool,
-    n: usize,
     out: &mut [S],
 ) {
+    let (count, n) = (element.displacements(), element.moves.len());
     vectorised(
         #[inline(always)]
         || {
-            for (k, left) in left.iter().enumerate() {
-                let end = if symmetric { k + 1 } else { DISPLACEMENTS };
+            for (k, left) in left.iter().enumerate().take(count) {
+                let end = if symmetric { k + 1 } else { count };
                 for (l, right) in right.iter().enumerate().take(end) {
                     let x = dot_by_four(left, right);
                     out[k * n + l] += x;
@@ -330,7 +331,7 @@ pub fn tangent<S: Scalar>(finite: &FiniteElements<S>, i: usize, x: &Local<S>, ou
         #[inline(always)]
         || own.map(|column| stresses(element, &column).map(|n| n * thin)),
     );
-    add_products((&own, &scaled), true, n, out);
+    add_products(element, (&own, &scaled), true, out);
     let stress = stresses(element, &strained.strain).map(|n| n * thin);
     add_curvature(element, &stress, n, out);
 }

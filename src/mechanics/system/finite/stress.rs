@@ -33,14 +33,17 @@ fn operator(element: &ShellElement) -> &StressOperator {
             x[l] = 1.0;
             x
         };
-        let of_unknown = |l: usize| curvatures(&geometry, &field(&motion(element, &unit(l))));
+        let of_unknown = |l: usize| {
+            let moved = field(&motion(element, &unit(l)));
+            curvatures((element.kind(), &geometry), &moved)
+        };
         let of_strain = |p: usize| {
             let (mut tied, mut mean) = ([0.0; QUADRATIC], [0.0; STRAINS - QUADRATIC]);
             match p.checked_sub(QUADRATIC) {
                 Some(c) => mean[c] = 1.0,
                 None => tied[p] = 1.0,
             }
-            membrane_strains(&geometry, &tied, &mean)
+            membrane_strains((element.kind(), &geometry), &tied, &mean)
         };
         Box::new(StressOperator {
             membrane: Columns::of((0..STRAINS).map(of_strain)),
@@ -89,7 +92,10 @@ pub fn stress_ratios<S: Scalar>(finite: &FiniteElements<S>, q: &[S], elements: &
         let of = (&own.membrane, &own.curvature);
         stress_ratios_of(&material(finite, i), finite.thickness[i], of)
     };
-    each(elements.len(), work, |_, ratios| out.extend(ratios));
+    each(elements.len(), work, |k, ratios| {
+        let count = finite.mesh.elements[elements[k]].kind().stress_points();
+        out.extend(&ratios[..count]);
+    });
     out
 }
 
@@ -101,13 +107,22 @@ pub fn pull_stress_ratios(
     by_q: &mut [f64],
     cot: &mut FiniteElements<f64>,
 ) {
-    let bars = bar.as_chunks::<STRESS_POINTS>().0;
+    let mut first = 0;
+    let counts = elements.iter().map(|&i| {
+        let count = finite.mesh.elements[i].kind().stress_points();
+        first += count;
+        first - count..first
+    });
+    let ranges: Vec<std::ops::Range<usize>> = counts.collect();
     let work = |k: usize| {
         let i = elements[k];
         let element = &finite.mesh.elements[i];
         let own = Measured::of(element, q);
         let of = (&own.membrane, &own.curvature);
-        let by = pull_stress_ratios_of(&material(finite, i), finite.thickness[i], of, &bars[k]);
+        let mut own_bar = [0.0; STRESS_POINTS];
+        let given = &bar[ranges[k].clone()];
+        own_bar[..given.len()].copy_from_slice(given);
+        let by = pull_stress_ratios_of(&material(finite, i), finite.thickness[i], of, &own_bar);
         let (mut by_strain, mut force) = ([0.0; STRAINS], [0.0; UNKNOWNS]);
         own.operator
             .membrane

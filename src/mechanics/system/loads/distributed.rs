@@ -9,11 +9,12 @@ use super::{LoadCotangent, LoadEntries};
 use crate::linalg::Emit;
 use crate::math::{Mat3, Scalar, Vec3, scalar::lift3};
 use crate::model::distributed::{DistributedLoad, Spread};
-use crate::model::finite::{FiniteElements, NODES};
+use crate::model::finite::FiniteElements;
 use crate::model::flexible::FlexibleBody;
 use crate::model::reduced::NodalBasis;
 use crate::model::{Axes, LoadKind};
-use crate::structures::shell::basis::{GAUSS_POINTS, TABLES};
+use crate::structures::shell::basis::{GAUSS_POINTS, Tables};
+use crate::structures::shell::{ShellKind, ShellNodes};
 use crate::system::flexible::{add_coordinates, add_unknown, basis_of, coordinates, unknown_of};
 use crate::system::in_motion::InMotion;
 
@@ -39,10 +40,13 @@ struct Patch<'a, S> {
     /// Forces on them at m = 1, axes of the frame.
     unit: Vec<Vec3<S>>,
     /// x,r and x,s at the Gauss points, of a pressure.
-    tangents: Option<[[Vec3<S>; 2]; GAUSS_POINTS]>,
+    tangents: Option<Tangents<S>>,
     /// s_a of a dead load.
     share: f64,
 }
+
+/// x,r and x,s at the Gauss points of a shell, and the shape functions there.
+type Tangents<S> = ([[Vec3<S>; 2]; GAUSS_POINTS], &'static Tables);
 
 /// Virtual velocities in the axes of the frame.
 struct Virtual<'a, S> {
@@ -145,17 +149,18 @@ impl<S: Scalar> Acting<'_, S> {
         }
     }
 
-    fn pressed<'a>(&self, nodes: &'a [usize; NODES]) -> Patch<'a, S> {
+    fn pressed<'a>(&self, nodes: &'a ShellNodes) -> Patch<'a, S> {
         let x: Vec<Vec3<S>> = nodes.iter().map(|&node| self.place(node)).collect();
-        let mut unit = vec![Vec3::zeros(); NODES];
+        let tables = ShellKind::of(nodes).tables();
+        let mut unit = vec![Vec3::zeros(); nodes.len()];
         let mut tangents = [[Vec3::zeros(); 2]; GAUSS_POINTS];
-        for (g, (basis, own)) in TABLES.gauss.iter().zip(&mut tangents).enumerate() {
+        for (g, (basis, own)) in tables.gauss.iter().zip(&mut tangents).enumerate() {
             for (along, by) in own.iter_mut().zip(&basis.by) {
                 for (x, &slope) in x.iter().zip(by) {
                     *along += x * S::from(slope);
                 }
             }
-            let normal = own[0].cross(&own[1]) * S::from(TABLES.weights[g]);
+            let normal = own[0].cross(&own[1]) * S::from(tables.weights[g]);
             for (unit, &n) in unit.iter_mut().zip(&basis.n) {
                 *unit += normal * S::from(n);
             }
@@ -164,7 +169,7 @@ impl<S: Scalar> Acting<'_, S> {
             nodes,
             x,
             unit,
-            tangents: Some(tangents),
+            tangents: Some((tangents, tables)),
             share: 0.0,
         }
     }
@@ -202,15 +207,15 @@ impl<S: Scalar> Acting<'_, S> {
             }
             velocities.push(w);
         }
-        let Some(tangents) = &patch.tangents else {
+        let Some((tangents, tables)) = &patch.tangents else {
             return out;
         };
-        for (g, ([along_r, along_s], basis)) in tangents.iter().zip(&TABLES.gauss).enumerate() {
+        for (g, ([along_r, along_s], basis)) in tangents.iter().zip(&tables.gauss).enumerate() {
             let mut w = Vec3::zeros();
             for (own, &n) in velocities.iter().zip(&basis.n) {
                 w += own * S::from(n);
             }
-            let by_normal = w * (size * TABLES.weights[g]);
+            let by_normal = w * (size * tables.weights[g]);
             let by = [along_s.cross(&by_normal), by_normal.cross(along_r)];
             for (a, node) in out.nodes.iter_mut().enumerate() {
                 *node += by[0] * S::from(basis.by[0][a]) + by[1] * S::from(basis.by[1][a]);

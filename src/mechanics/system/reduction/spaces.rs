@@ -4,7 +4,7 @@
 use super::matrices::Matrices;
 use super::subspace::{Subspace, principal};
 use crate::math::slices::dot;
-use crate::model::finite::{DISPLACEMENTS, FiniteElements};
+use crate::model::finite::FiniteElements;
 
 /// Largest entry that couples in-plane and out-of-plane unknowns of a flat shell, relative to the
 /// largest of all.
@@ -34,7 +34,7 @@ pub(super) fn bending_unknowns(shells: &FiniteElements<f64>) -> Option<Vec<bool>
         return None;
     }
     for element in elements {
-        let out = |i: usize| i >= DISPLACEMENTS || i % 3 == normal;
+        let out = |i: usize| i >= element.displacements() || i % 3 == normal;
         for linear in &element.linear {
             let most = linear
                 .entries()
