@@ -243,6 +243,8 @@ mod tests {
 
     const KINDS: [ShellKind; 2] = [ShellKind::Mitc9, ShellKind::Mitc4];
 
+    type Polynomial = fn(f64, f64) -> f64;
+
     /// The value of a polynomial at the Gauss points, by its values at the tying points.
     fn carried(
         tables: &Tables,
@@ -280,7 +282,7 @@ mod tests {
             };
             for (g, tied) in tables.tied.iter().enumerate() {
                 let (r, s) = (places[g % places.len()], places[g / places.len()]);
-                let (row, shear): (fn(f64, f64) -> f64, fn(f64, f64) -> f64) = match kind {
+                let (row, shear): (Polynomial, Polynomial) = match kind {
                     ShellKind::Mitc9 => (
                         |r, s| (1.0 + 0.3 * r) * (0.2 + s - 0.7 * s * s),
                         |r, s| (1.0 + 0.3 * r) * (0.2 + s - 0.7 * s * s),
