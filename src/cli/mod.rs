@@ -8,6 +8,7 @@ mod error_table;
 mod explain;
 mod installation;
 mod interrupt;
+mod modes;
 mod new;
 mod one_start;
 mod optimise;

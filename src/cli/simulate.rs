@@ -4,6 +4,7 @@ use super::aggregates::{add_smoothed, told};
 use super::arguments::Job;
 use super::earlier::start_from;
 use super::error_table::{self, table};
+use super::modes;
 use super::{
     DONE, Failure, NOT_REACHED, draw, load, no_page, print, read, refine, shown, tell, write_report,
 };
@@ -49,11 +50,14 @@ pub(crate) fn simulate(
         false => driver::simulate(&problem, &start),
     };
     let simulation = simulation.map_err(Failure::numerical)?;
+    let told = driver::modes::told(&problem, &start).map_err(Failure::numerical)?;
+    let modes = told.as_ref().map_or(String::new(), modes::text);
     if json {
-        print(&as_json(&problem, &simulation, job.error)?)?;
+        let modes = told.as_ref().map_or(Map::new(), modes::json);
+        print(&as_json(&problem, &simulation, (job.error, modes))?)?;
     } else {
         if !job.quiet {
-            print(&summary(&problem, &simulation))?;
+            print(&(summary(&problem, &simulation) + &modes))?;
         }
         if job.error {
             let found = error::estimate(&problem, &simulation.at, &all(&problem), true);
@@ -81,7 +85,8 @@ pub(crate) fn simulate(
         }
         draw(directory, figures::of_simulation(&problem, &simulation));
         if job.report {
-            let (text, ends) = (summary(&problem, &simulation), Ends::of_motion(&simulation));
+            let text = summary(&problem, &simulation) + &modes;
+            let ends = Ends::of_motion(&simulation);
             write_report(directory, &problem, text, &ends, None)?;
         }
         if !job.quiet {
@@ -128,7 +133,7 @@ pub(super) fn expect_directory(job: &Job) -> Result<(), Failure> {
 fn as_json(
     problem: &Problem,
     simulation: &Simulation,
-    with_errors: bool,
+    (with_errors, modes): (bool, Map<String, Value>),
 ) -> Result<String, Failure> {
     let (run, counts) = (&simulation.at.run, simulation.at.run.counts);
     let names = &problem.function_names;
@@ -181,15 +186,21 @@ fn as_json(
     let conserved = simulation.at.scene.model.conserves_energy();
     let (position, velocity) = simulation.constraint_drift();
     if simulation.at.is_rest() {
-        let all = json!({
+        let mut all = json!({
             "name": problem.name,
-            "analysis": "rest",
+            "analysis": if modes.is_empty() { "rest" } else { "modes" },
             "functions": functions,
             "energy": first.kinetic + first.potential,
             "left": {"acceleration": simulation.unbalanced(), "gaps": position},
             "notes": driver::start::notes(problem, &simulation.at.x),
             "warnings": warnings,
         });
+        if let Value::Object(all) = &mut all {
+            if problem.is_turning() {
+                all.retain(|key, _| key != "energy" && key != "left");
+            }
+            all.extend(modes);
+        }
         return Ok(serde_json::to_string_pretty(&all).map_err(Failure::numerical)? + "\n");
     }
     let mut all = json!({
@@ -233,6 +244,7 @@ fn summary(problem: &Problem, simulation: &Simulation) -> String {
     };
     let is_rest = simulation.at.is_rest();
     let mut text = match is_rest {
+        true if problem.is_turning() => format!("{}: in steady rotation\n", problem.name),
         true => format!("{}: at rest\n", problem.name),
         false => format!(
             "{}: {} s by {} in {} steps ({} evaluations, {} Newton iterations, {} factorisations{products})\n  \
@@ -300,6 +312,9 @@ fn summary(problem: &Problem, simulation: &Simulation) -> String {
     let (first, last) = (&simulation.observations[0], simulation.observations.last());
     let energy = first.kinetic + first.potential;
     let (position, velocity) = simulation.constraint_drift();
+    if problem.is_turning() {
+        return text;
+    }
     if is_rest {
         let _ = writeln!(
             text,
