@@ -671,7 +671,7 @@ Turns: TypeAlias = Union[Turn, Sequence[Turn]]
 InDegrees: TypeAlias = Union[Real, Vector]
 """One angle or three, in degrees."""
 
-Analysis: TypeAlias = Literal["motion", "rest"]
+Analysis: TypeAlias = Literal["motion", "rest", "modes"]
 """What is computed of a machine."""
 
 StartOfMotion: TypeAlias = Literal["given", "equilibrium"]
@@ -4368,13 +4368,17 @@ class functions(Kinds):
 
     @staticmethod
     @checked
-    def frequency(*, mode: Integer) -> Function:
+    def frequency(*, mode: Integer, damped: bool | None = None) -> Function:
         """A natural frequency [Hz].
 
         Parameters
         ----------
         mode : integer from 1 to 150
             Number of the mode from 1, rigid motions left out. Two equal frequencies have no derivatives.
+        damped : bool, optional
+            Whether the frequency is that of the damped oscillation of a machine, |Im s| / 2π, numbered as
+            "damping_ratio" does. Default: the natural frequency without damping. In steady rotation all frequencies
+            are damped ones.
         """
         return made(Function, "functions.frequency", locals())
 
@@ -4389,6 +4393,31 @@ class functions(Kinds):
             Aggregation parameter; larger is closer to the lowest frequency.
         """
         return made(Function, "functions.lowest_frequency", locals())
+
+    @staticmethod
+    @checked
+    def damping_ratio(*, mode: Integer) -> Function:
+        """Damping ratio of a mode of a machine: 0 without damping, 1 where no oscillation is left, below 0 if it grows.
+
+        Parameters
+        ----------
+        mode : integer from 1 to 150
+            Number of the damped mode from 1, by its rate |s|: that of "frequency" with "damped". Motions that do not
+            oscillate, being free or damped beyond ζ = 1, are not counted.
+        """
+        return made(Function, "functions.damping_ratio", locals())
+
+    @staticmethod
+    @checked
+    def critical_speed(*, number: Integer) -> Function:
+        """Critical speed of a machine that turns [rad/s]: there a whirl turns with it, without damping.
+
+        Parameters
+        ----------
+        number : integer from 1 to 50
+            Its number from 1, the lowest first. The two planes of a round shaft count as one.
+        """
+        return made(Function, "functions.critical_speed", locals())
 
     @staticmethod
     @checked
@@ -4419,6 +4448,8 @@ class MachineKeys(Document):
         "parameters",
         "bodies",
         "analysis",
+        "modes",
+        "turning",
         "start",
         "initial_velocity",
         "joints",
@@ -4468,11 +4499,12 @@ class MachineKeys(Document):
             How well rounded numbers fit: joints of loops may miss each other by this part of the size of their loop
             and by this angle [rad], and an inertia may miss that of a solid by this part. What is left out is said.
             Default 1e-5.
-        analysis : "motion" or "rest", optional
-            What is computed of a machine of bodies: its motion (default), or where it rests under gravity and loads.
-            Structures are always at rest.
+        analysis : "motion" or "rest" or "modes", optional
+            What is computed of a machine of bodies: its motion (default), where it rests under gravity and loads, or
+            its modes about that rest. Structures are always at rest.
             "motion": Its motion over time.
             "rest": Where it rests: without velocity and acceleration, drives and loads held as they are at t = 0.
+            "modes": Its vibrations about rest, or about steady rotation: frequencies, damping ratios and shapes.
         start : "given" or "equilibrium", optional
             Deformations of flexible bodies at the start, default "given".
             "given": Those that the bodies give, else none.
@@ -4553,6 +4585,38 @@ class MachineKeys(Document):
             Its velocity at the start, instead of that of the assembly.
         """
         return BodyName(name, self._add("bodies", "body", name, keys(locals(), "name")))
+
+    @checked
+    def set_modes(self, *, count: Integer | None = None, speeds: Vector | None = None) -> None:
+        """Which modes are told and drawn, with "analysis": "modes".
+
+        A second call replaces what the first has set.
+
+        Parameters
+        ----------
+        count : integer from 1 to 150, optional
+            Number of modes, the lowest first, default 6.
+        speeds : numbers, shape (n,) [rad/s], optional
+            Speeds of rotation of a Campbell diagram.
+        """
+        self._set("modes", "set_modes", locals())
+
+    @checked
+    def set_turning(self, *, axis: Vector, speed: Real, at: Vector | None = None) -> None:
+        """Steady rotation of the machine, with "analysis": "modes".
+
+        A second call replaces what the first has set.
+
+        Parameters
+        ----------
+        axis : numbers, shape (3,)
+            Direction of the axis, of any length; the machine turns about it by the right hand.
+        speed : number at least 0 [rad/s]
+            Speed of rotation.
+        at : numbers, shape (3,) [m], optional
+            A point of the axis, default the origin.
+        """
+        self._set("turning", "set_turning", locals())
 
     @checked
     def set_initial_velocity(

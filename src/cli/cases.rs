@@ -3,11 +3,12 @@
 use super::aggregates::{add_smoothed, told};
 use super::arguments::Job;
 use super::{DONE, Failure, motion, print, shown, statics, tell, write_report};
-use crate::driver::Simulated;
 use crate::driver::analysed::InCases;
 use crate::driver::ends::Ends;
+use crate::driver::modes::{ToldModes, told as told_modes};
+use crate::driver::{Simulated, Simulation};
 use crate::figures::tables::ReactionAxes;
-use crate::problem::Problem;
+use crate::problem::{Case, Problem};
 use crate::report::{prepare_directory, with_space};
 use serde_json::{Map, Value, json};
 use std::fmt::Write;
@@ -29,7 +30,7 @@ pub(super) fn simulate(
         print(&(text + "\n"))?;
     } else {
         if !job.quiet {
-            print(&summary(problem, all))?;
+            print(&summary(problem, all)?)?;
         }
         if job.error {
             print(&motion::errors(problem, &found)?)?;
@@ -51,7 +52,7 @@ pub(super) fn simulate(
             write_report(
                 directory,
                 problem,
-                summary(problem, all),
+                summary(problem, all)?,
                 &Ends::of(&found),
                 None,
             )?;
@@ -73,11 +74,14 @@ pub(super) fn simulate(
 }
 
 /// Each case, then the functions over cases.
-fn summary(problem: &Problem, all: &InCases<Simulated>) -> String {
+fn summary(problem: &Problem, all: &InCases<Simulated>) -> Result<String, Failure> {
     let mut text = String::new();
     for (case, at) in all.each() {
         text += &match at {
-            Simulated::Motion(at) => motion::summary(&case.problem, at),
+            Simulated::Motion(at) => {
+                let told = modes(case, at)?;
+                motion::summary(&case.problem, at, told.as_ref())
+            }
             Simulated::Statics(at) => statics::summary(&case.problem, at),
             Simulated::Cases(_) => String::new(),
         };
@@ -90,7 +94,9 @@ fn summary(problem: &Problem, all: &InCases<Simulated>) -> String {
             .skip(problem.composition.first)
     };
     let width = names().map(|(_, name)| name.chars().count()).max();
-    let Some(width) = width else { return text };
+    let Some(width) = width else {
+        return Ok(text);
+    };
     let _ = writeln!(text, "{}: {} cases", problem.name, all.cases.list.len());
     for (f, name) in names() {
         let unit = with_space(Some(&problem.function_unit(f)));
@@ -98,7 +104,12 @@ fn summary(problem: &Problem, all: &InCases<Simulated>) -> String {
         text += &told(all.smoothed(f), false);
         text.push('\n');
     }
-    text
+    Ok(text)
+}
+
+/// The modes that a case asks for.
+fn modes(case: &Case, at: &Simulation) -> Result<Option<ToldModes>, Failure> {
+    told_modes(&case.problem, &at.at.x).map_err(Failure::numerical)
 }
 
 /// Each case as by itself, and all functions.
@@ -106,7 +117,10 @@ fn as_json(job: &Job, problem: &Problem, all: &InCases<Simulated>) -> Result<Val
     let mut cases = Map::new();
     for (case, at) in all.each() {
         let own = match at {
-            Simulated::Motion(at) => motion::as_json(&case.problem, at, job.error)?,
+            Simulated::Motion(at) => {
+                let told = modes(case, at)?;
+                motion::as_json(&case.problem, at, (job.error, told.as_ref()))?
+            }
             Simulated::Statics(at) => statics::as_json(&case.problem, at, None),
             Simulated::Cases(_) => Value::Null,
         };

@@ -9,6 +9,7 @@ mod error_table;
 mod explain;
 mod installation;
 mod interrupt;
+mod modes;
 mod motion;
 mod new;
 mod one_start;

@@ -3,7 +3,8 @@
 use super::aggregates::{add_smoothed, told};
 use super::arguments::Job;
 use super::error_table::{self, table};
-use super::{Failure, draw};
+use super::{Failure, draw, modes};
+use crate::driver::modes::ToldModes;
 use crate::driver::unfollowed::unfollowed;
 use crate::driver::{self, Evaluated, Simulated, Simulation, error};
 use crate::figures::tables::ReactionAxes;
@@ -41,7 +42,7 @@ pub(super) fn write_files(
 pub(super) fn as_json(
     problem: &Problem,
     simulation: &Simulation,
-    with_errors: bool,
+    (with_errors, shown): (bool, Option<&ToldModes>),
 ) -> Result<Value, Failure> {
     let (run, counts) = (&simulation.at.run, simulation.at.run.counts);
     let names = &problem.function_names;
@@ -94,15 +95,22 @@ pub(super) fn as_json(
     let conserved = simulation.at.scene.model.conserves_energy();
     let (position, velocity) = simulation.constraint_drift();
     if simulation.at.is_rest() {
-        return Ok(json!({
+        let mut all = json!({
             "name": problem.name,
-            "analysis": "rest",
+            "analysis": if shown.is_some() { "modes" } else { "rest" },
             "functions": functions,
             "energy": first.kinetic + first.potential,
             "left": {"acceleration": simulation.unbalanced(), "gaps": position},
             "notes": driver::start::notes(problem, &simulation.at.x),
             "warnings": warnings,
-        }));
+        });
+        if let Value::Object(all) = &mut all {
+            if problem.is_turning() {
+                all.retain(|key, _| key != "energy" && key != "left");
+            }
+            all.extend(shown.map_or(Map::new(), modes::json));
+        }
+        return Ok(all);
     }
     let mut all = json!({
         "name": problem.name,
@@ -135,7 +143,12 @@ pub(super) fn as_json(
     Ok(all)
 }
 
-pub(super) fn summary(problem: &Problem, simulation: &Simulation) -> String {
+/// The result of a simulation in lines, with the modes that the file asks for.
+pub(super) fn summary(
+    problem: &Problem,
+    simulation: &Simulation,
+    shown: Option<&ToldModes>,
+) -> String {
     let run = &simulation.at.run;
     let counts = run.counts;
     let products = match counts.products {
@@ -144,6 +157,7 @@ pub(super) fn summary(problem: &Problem, simulation: &Simulation) -> String {
     };
     let is_rest = simulation.at.is_rest();
     let mut text = match is_rest {
+        true if problem.is_turning() => format!("{}: in steady rotation\n", problem.name),
         true => format!("{}: at rest\n", problem.name),
         false => format!(
             "{}: {} s by {} in {} steps ({} evaluations, {} Newton iterations, {} factorisations{products})\n  \
@@ -211,13 +225,16 @@ pub(super) fn summary(problem: &Problem, simulation: &Simulation) -> String {
     let (first, last) = (&simulation.observations[0], simulation.observations.last());
     let energy = first.kinetic + first.potential;
     let (position, velocity) = simulation.constraint_drift();
+    if problem.is_turning() {
+        return text + &shown.map_or(String::new(), modes::text);
+    }
     if is_rest {
         let _ = writeln!(
             text,
             "  energy {energy:.6e} J; left: acceleration {:.1e} m/s^2, gaps of joints {position:.1e} m",
             simulation.unbalanced()
         );
-        return text;
+        return text + &shown.map_or(String::new(), modes::text);
     }
     let _ = writeln!(
         text,

@@ -49,13 +49,15 @@ pub(crate) fn simulate(
         false => driver::simulate(&problem, &start),
     };
     let simulation = simulation.map_err(Failure::numerical)?;
+    let told = driver::modes::told(&problem, &start).map_err(Failure::numerical)?;
+    let told = told.as_ref();
     if json {
-        let all = as_json(&problem, &simulation, job.error)?;
+        let all = as_json(&problem, &simulation, (job.error, told))?;
         let text = serde_json::to_string_pretty(&all).map_err(Failure::numerical)?;
         print(&(text + "\n"))?;
     } else {
         if !job.quiet {
-            print(&summary(&problem, &simulation))?;
+            print(&summary(&problem, &simulation, told))?;
         }
         if job.error {
             print(&errors_of_motion(&problem, &simulation)?)?;
@@ -64,7 +66,8 @@ pub(crate) fn simulate(
     if let Some(directory) = &job.output {
         write_files(job, directory, (&problem, &simulation), axes)?;
         if job.report {
-            let (text, ends) = (summary(&problem, &simulation), Ends::of_motion(&simulation));
+            let text = summary(&problem, &simulation, told);
+            let ends = Ends::of_motion(&simulation);
             write_report(directory, &problem, text, &ends, None)?;
         }
         if !job.quiet {

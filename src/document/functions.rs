@@ -7,6 +7,7 @@ pub use super::instants::{
 };
 use super::measured::Bound;
 use super::misfit::Misfit;
+use super::modes::{CriticalSpeed, DampingRatio};
 use super::statics::{
     CentreOfMass, Displacement, Frequency, LowestFrequency, MomentOfInertia, OfCase,
     ReactionMoment, StaticReaction, Stress,
@@ -68,6 +69,10 @@ pub enum Function {
     LowestFrequency(LowestFrequency),
     /// Sum, mean, deviation or extreme of the values of a function in several cases.
     OverCases(OverCases),
+    /// Damping ratio of a mode of a machine: 0 without damping, 1 where no oscillation is left, below 0 if it grows.
+    DampingRatio(DampingRatio),
+    /// Critical speed of a machine that turns \[rad/s\]: there a whirl turns with it, without damping.
+    CriticalSpeed(CriticalSpeed),
     /// An expression of other functions and of parameters, such as `2*mass + work/duration`. Names that are no words
     /// stand between single quotes or backquotes.
     Expression(String),
@@ -108,6 +113,8 @@ pub enum OfMotion<'a> {
     Mass,
     Frequency(&'a Frequency),
     LowestFrequency(&'a LowestFrequency),
+    DampingRatio(&'a DampingRatio),
+    CriticalSpeed(&'a CriticalSpeed),
 }
 
 impl Function {
@@ -137,6 +144,8 @@ impl Function {
             Self::Mass => Some(OfMotion::Mass),
             Self::Frequency(own) => Some(OfMotion::Frequency(own)),
             Self::LowestFrequency(own) => Some(OfMotion::LowestFrequency(own)),
+            Self::DampingRatio(own) => Some(OfMotion::DampingRatio(own)),
+            Self::CriticalSpeed(own) => Some(OfMotion::CriticalSpeed(own)),
             Self::CentreOfMass(_)
             | Self::MomentOfInertia(_)
             | Self::StrainEnergy(_)

@@ -14,6 +14,7 @@ pub mod measured;
 pub mod mechanics;
 pub mod misfit;
 pub mod modal;
+pub mod modes;
 pub mod names;
 pub mod parts;
 pub mod prepared;
@@ -32,6 +33,7 @@ use indexmap::IndexMap;
 use joints::Joint;
 use loads::Load;
 use mechanics::{AssemblyVelocity, Body};
+use modes::{ModeTable, SteadyRotation};
 use parts::{Defaults, Part, Use};
 use quantity::{Quantity, Vector};
 use schemars::JsonSchema;
@@ -62,7 +64,13 @@ pub const VERSION: u64 = 1;
                 "properties": {"analysis": {"const": "rest", "description": "At rest nothing is simulated."}},
                 "required": ["analysis"]
             },
-            "else": {"required": ["simulation"]}
+            "else": {
+                "if": {
+                    "properties": {"analysis": {"const": "modes", "description": "Modes are about rest."}},
+                    "required": ["analysis"]
+                },
+                "else": {"required": ["simulation"]}
+            }
         }
     )
 )]
@@ -103,9 +111,13 @@ pub struct Document {
     /// Bodies by name.
     #[serde(default)]
     pub bodies: IndexMap<String, Body>,
-    /// What is computed of a machine of bodies: its motion (default), or where it rests under gravity and loads. Structures
-    /// are always at rest.
+    /// What is computed of a machine of bodies: its motion (default), where it rests under gravity and loads, or its modes
+    /// about that rest. Structures are always at rest.
     pub analysis: Option<Analysis>,
+    /// Which modes are told and drawn, with "analysis": "modes".
+    pub modes: Option<ModeTable>,
+    /// Steady rotation of the machine, with "analysis": "modes".
+    pub turning: Option<SteadyRotation>,
     /// Deformations of flexible bodies at the start, default "given".
     #[serde(default)]
     pub start: flexible::Start,
@@ -176,6 +188,8 @@ pub enum Analysis {
     Motion,
     /// Where it rests: without velocity and acceleration, drives and loads held as they are at t = 0.
     Rest,
+    /// Its vibrations about rest, or about steady rotation: frequencies, damping ratios and shapes.
+    Modes,
 }
 
 /// Default tolerance of the input.
@@ -189,7 +203,14 @@ impl Document {
 
     /// Whether a machine of bodies is at rest.
     pub fn is_rest(&self) -> bool {
-        self.analysis == Some(Analysis::Rest) && self.structures.is_empty()
+        matches!(self.analysis, Some(Analysis::Rest | Analysis::Modes))
+            && self.structures.is_empty()
+    }
+
+    /// The modes that are told, if they are asked for.
+    pub fn told_modes(&self) -> Option<ModeTable> {
+        (self.analysis == Some(Analysis::Modes) && self.structures.is_empty())
+            .then(|| self.modes.clone().unwrap_or_default())
     }
 
     /// What is sought before the functions are evaluated or the motion begins, if anything.

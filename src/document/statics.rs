@@ -238,6 +238,10 @@ pub struct Frequency {
         "design_variable" = "the number of a mode is a count, not a physical number"
     ))]
     pub mode: usize,
+    /// Whether the frequency is that of the damped oscillation of a machine, |Im s| / 2π, numbered as "damping_ratio" does.
+    /// Default: the natural frequency without damping. In steady rotation all frequencies are damped ones.
+    #[serde(default)]
+    pub damped: bool,
 }
 
 /// A smooth lower bound of all natural frequencies, also where they meet.

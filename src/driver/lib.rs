@@ -24,6 +24,7 @@ mod frozen;
 pub mod integration;
 pub mod known_evaluations;
 pub mod memory;
+pub mod modes;
 pub mod multi_start;
 pub mod not_finite;
 pub mod optimise;

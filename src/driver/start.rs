@@ -21,6 +21,8 @@ const NEARLY: f64 = 1e-4;
 /// there is none.
 pub fn notes(problem: &Problem, x: &[f64]) -> Vec<String> {
     match problem.without_equilibrium() {
+        // Of the turning frame, where the stiffness alone does not tell.
+        Some(_) if problem.is_turning() => Vec::new(),
         Some(_) if problem.is_rest() => of_rest(problem, x),
         Some(placed) => {
             let mut notes = of_placement(&placed, x, " before equilibrium is sought");

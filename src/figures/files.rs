@@ -10,6 +10,7 @@ use super::elastic_figures::{
 use super::error::FigureError;
 use super::fits::curves;
 use super::flight::release;
+use super::machine_modes;
 use super::shells;
 use super::statics::figures as of_structures;
 use super::traces;
@@ -30,7 +31,7 @@ use crate::report::History;
 const MOST_NUMBERS: usize = 40_000;
 
 /// The names of all figures.
-pub const NAMES: [&str; 11] = [
+pub const NAMES: [&str; 12] = [
     "convergence.svg",
     "constraints.svg",
     "fit.svg",
@@ -42,6 +43,7 @@ pub const NAMES: [&str; 11] = [
     "thickness.svg",
     "deformed.svg",
     "modes.svg",
+    "campbell.svg",
 ];
 
 /// A file's name and content.
@@ -110,6 +112,7 @@ fn figures(
     }
     // At rest there is nothing over time.
     if problem.is_rest() {
+        all.extend(machine_modes::figures(problem, designs, &drawings));
         return drawn(all);
     }
     let energies: Vec<EnergyRun> = designs
@@ -168,7 +171,7 @@ pub(super) fn thrown_for(problem: &Problem) -> Option<Vec<usize>> {
     Some(problem.composition.of_scene(&[objective]).into_owned())
 }
 
-fn scenery(drawing: &Drawing) -> Scenery {
+pub(super) fn scenery(drawing: &Drawing) -> Scenery {
     // An oblique view shows a sum of coordinates.
     let label = |axis: &Vec3<f64>| {
         const NAMES: [&str; 3] = ["x", "y", "z"];
@@ -284,7 +287,7 @@ fn lapse(
 }
 
 /// The silhouette of a body with elastic coordinates `q` whose points are shown by `place`.
-fn outline(
+pub(super) fn outline(
     outline: &Outline,
     q: &[f64],
     detail: &Detail,

@@ -20,6 +20,7 @@ mod files;
 mod fits;
 mod flight;
 mod forces;
+mod machine_modes;
 pub mod page;
 pub mod plots;
 pub mod report_page;

@@ -222,10 +222,16 @@ fn cannot_assemble(failure: &AssemblyFailure) -> Finding {
             "gravity and loads under which the machine comes to rest",
             "place the bodies nearer to where they rest; look at stiffnesses and loads",
         ),
+        AssemblyFailure::NotAlike { .. } => (
+            "/turning".to_owned(),
+            "a machine that is the same at every angle: gravity along the axis or zero, joints with ground on the axis, and \
+             springs that hold alike in all directions",
+            "set \"gravity\" to [0, 0, 0] if it is across the axis",
+        ),
         AssemblyFailure::NoModes { .. } => (
             "/functions".to_owned(),
-            "a stable rest under loads with a potential, and as many modes as functions ask for",
-            "bodies without inertia and free motions have no modes; forces along axes of a body have no potential",
+            "a stable rest, and as many modes as functions ask for",
+            "bodies without inertia, free motions and motions that do not oscillate are no modes",
         ),
         AssemblyFailure::MovedApart { body } => (
             join("/bodies", body),

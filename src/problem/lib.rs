@@ -38,6 +38,7 @@ mod mass;
 mod measurements;
 mod memory;
 mod modal;
+mod modes;
 mod msh;
 mod notes;
 mod origins;
@@ -455,7 +456,7 @@ impl Problem {
     }
 
     /// The model whose bodies are as placed.
-    fn as_placed(&self, x: &[f64]) -> Model<f64> {
+    pub(crate) fn as_placed(&self, x: &[f64]) -> Model<f64> {
         let scene = scene::scene(&self.written, &self.order, &self.extended(x));
         let mut model = scene.model;
         if self.is_rest() {

@@ -75,7 +75,9 @@ pub(super) fn prune(document: &mut Map<String, Value>, findings: &[Finding]) -> 
     ];
     // Structures without a motion need neither bodies nor a simulation.
     let fixed = document.contains_key("structures") || damage.touches("structures");
-    let rests = document.get("analysis") == Some(&json!("rest"));
+    let rests = ["rest", "modes"]
+        .map(|own| Some(json!(own)))
+        .contains(&document.get("analysis").cloned());
     let count = match (fixed, rests) {
         (true, _) => 2,
         (false, true) => 3,

@@ -19,8 +19,9 @@ use crate::schema::Document;
 use crate::schema::functions::{self as written, CountedFrom, Function as Written, OfMotion};
 use crate::schema::measured::{Bound as Side, JointReaction, OfSpring, ReactionAxes};
 use crate::schema::mechanics::Point;
+use crate::schema::statics::Frequency;
 use crate::system::angular_momentum::AngularMomentum;
-use crate::system::equilibrium::Vibration;
+use crate::system::equilibrium::{DampedVibration, Vibrations};
 use crate::system::loads::springs::{Spring, SpringPart};
 use crate::system::measures::{End, Wrench, WrenchPart};
 
@@ -37,7 +38,7 @@ pub(super) struct FunctionBuilder<'a, S> {
     /// The axes of the joints on the first of them.
     pub frames: Vec<[Vec3<S>; 3]>,
     /// Vibrations about rest.
-    pub vibrations: Vec<Vibration<S>>,
+    pub vibrations: Vibrations<S>,
     pub x: &'a [S],
 }
 
@@ -90,21 +91,44 @@ impl<S: Scalar> FunctionBuilder<'_, S> {
             },
             OfMotion::Frequency(own) => Function::OfDesign {
                 unit: "Hz",
-                value: self.frequency(own.mode),
+                value: self.frequency(own),
+            },
+            OfMotion::DampingRatio(own) => Function::OfDesign {
+                unit: "1",
+                value: self.of_damped(own.mode, DampedVibration::damping_ratio),
+            },
+            OfMotion::CriticalSpeed(own) => Function::OfDesign {
+                unit: "rad/s",
+                value: match self.vibrations.critical.get(own.number - 1) {
+                    None => S::from(f64::NAN),
+                    Some(own) => single(own.speed, own.divides),
+                },
             },
             OfMotion::LowestFrequency(own) => Function::LowestFrequency {
                 rho: rho_of(own.rho),
-                frequencies: self.vibrations.iter().map(|own| own.frequency).collect(),
+                frequencies: (self.vibrations.undamped.iter())
+                    .map(|own| own.frequency)
+                    .collect(),
             },
         }
     }
 
-    /// A natural frequency \[Hz\]: not a number without rest, nor its derivative where two are equal.
-    fn frequency(&self, mode: usize) -> S {
-        match self.vibrations.get(mode - 1) {
+    /// A frequency \[Hz\]: not a number without rest.
+    fn frequency(&self, of: &Frequency) -> S {
+        if of.damped {
+            return self.of_damped(of.mode, DampedVibration::frequency);
+        }
+        match self.vibrations.undamped.get(of.mode - 1) {
             None => S::from(f64::NAN),
-            Some(own) if own.repeated => own.frequency + S::of_infinitesimal(f64::NAN),
-            Some(own) => own.frequency,
+            Some(own) => single(own.frequency, own.repeated),
+        }
+    }
+
+    /// A number of a damped vibration.
+    fn of_damped(&self, mode: usize, of: fn(&DampedVibration<S>) -> S) -> S {
+        match self.vibrations.damped.get(mode - 1) {
+            None => S::from(f64::NAN),
+            Some(own) => single(of(own), own.repeated),
         }
     }
 
@@ -434,6 +458,14 @@ impl<S: Scalar> FunctionBuilder<'_, S> {
     }
 }
 
+/// A number of one mode: its derivative is not a number where another one has the same.
+fn single<S: Scalar>(value: S, repeated: bool) -> S {
+    match repeated {
+        true => value + S::of_infinitesimal(f64::NAN),
+        false => value,
+    }
+}
+
 /// The range function of this name, and the parameter ρ of its aggregation (`None` for its final
 /// value). `None` if there is no such function or it releases no projectile.
 pub fn released<'a>(
@@ -455,7 +487,9 @@ pub fn released<'a>(
         | OfMotion::Duration
         | OfMotion::Mass
         | OfMotion::Frequency(_)
-        | OfMotion::LowestFrequency(_) => return None,
+        | OfMotion::LowestFrequency(_)
+        | OfMotion::DampingRatio(_)
+        | OfMotion::CriticalSpeed(_) => return None,
     };
     // A release is one of the whole run.
     if during.is_some() {

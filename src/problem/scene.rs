@@ -18,8 +18,10 @@ use crate::schema::flexible::Start;
 use crate::schema::functions::OfMotion;
 use crate::schema::loads::Load;
 use crate::schema::mechanics::{Body, Shape};
+use crate::schema::modes::DampingRatio;
+use crate::schema::statics::Frequency;
 use crate::system::Numbering;
-use crate::system::equilibrium::{WantedModes, settle};
+use crate::system::equilibrium::{Request, Turning, Vibrations, WantedModes, settle};
 use crate::system::failure::AssemblyFailure;
 use crate::system::placement::guess;
 
@@ -65,17 +67,21 @@ pub fn with_places<S: Scalar>(
         frames: (model.joints.iter())
             .map(|joint| joint.frame_a.axes)
             .collect(),
-        vibrations: Vec::new(),
+        vibrations: Vibrations::default(),
         x,
     };
     count_turns(document, &builder, &mut model);
     if let (Some(sought), None) = (document.sought(), &unstarted) {
-        let wanted = wanted_modes(document);
+        let request = Request {
+            sought,
+            turning: turning(document, x),
+            modes: wanted_modes(document),
+        };
         let mobilities: Vec<Mobility> = model.bodies.iter().map(|body| body.mobility).collect();
         if document.is_rest() {
             without_spin(document, &mut model);
         }
-        match settle(&mut model, &document.known_starts, (sought, &wanted)) {
+        match settle(&mut model, &document.known_starts, &request) {
             Ok(vibrations) => builder.vibrations = vibrations,
             Err(failure) => unstarted = Some(failure),
         }
@@ -121,7 +127,16 @@ fn wanted_modes(document: &Document) -> WantedModes {
     let mut wanted = WantedModes::default();
     for function in document.functions.values() {
         match function.of_motion() {
-            Some(OfMotion::Frequency(own)) => wanted.count = wanted.count.max(own.mode),
+            Some(OfMotion::Frequency(own)) if !own.damped => {
+                wanted.count = wanted.count.max(own.mode);
+            }
+            Some(OfMotion::Frequency(Frequency { mode, .. }))
+            | Some(OfMotion::DampingRatio(DampingRatio { mode })) => {
+                wanted.damped = wanted.damped.max(*mode);
+            }
+            Some(OfMotion::CriticalSpeed(own)) => {
+                wanted.critical = wanted.critical.max(own.number);
+            }
             Some(OfMotion::LowestFrequency(own)) => {
                 let rho = rho_of(own.rho);
                 // The smaller one, or the one that is known.
@@ -131,6 +146,17 @@ fn wanted_modes(document: &Document) -> WantedModes {
         }
     }
     wanted
+}
+
+/// The steady rotation of a machine.
+pub(super) fn turning<S: Scalar>(document: &Document, x: &[S]) -> Option<Turning<S>> {
+    let own = document.turning.as_ref()?;
+    let axis = Vec3::from(own.axis).normalize();
+    Some(Turning {
+        axis: lift3(&axis),
+        point: own.at.as_ref().map_or(Vec3::zeros(), |at| vector(at, x)),
+        speed: own.speed.get(x),
+    })
 }
 
 /// Gives torsion springs counters of their turns, which start as the angles of their joints do.

@@ -38,7 +38,13 @@ const FOLDERS: [(&str, &str); 4] = [
 ];
 
 /// Pictures of a result, the most telling first.
-const PICTURES: [&str; 4] = ["fit.svg", "motion.svg", "thickness.svg", "deformed.svg"];
+const PICTURES: [&str; 5] = [
+    "fit.svg",
+    "campbell.svg",
+    "motion.svg",
+    "thickness.svg",
+    "deformed.svg",
+];
 
 /// Size of a picture [bytes] from which two instants suffice.
 const LARGE: usize = 600_000;

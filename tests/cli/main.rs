@@ -7,6 +7,7 @@ mod commands;
 mod gallery;
 mod installation;
 mod memory;
+mod modes;
 mod names;
 mod parameters;
 mod program;

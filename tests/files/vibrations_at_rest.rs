@@ -398,11 +398,4 @@ fn what_has_no_frequencies_is_told() {
         text.contains("a natural frequency of a machine in motion"),
         "{text}"
     );
-    // Beck's column in rods: a force along the last of two.
-    let mut follower = chain(2, 1.0, 1.0);
-    follower["loads"] = json!({"push": {"force": {
-        "body": "l1", "point": "b", "direction": [1, 0, 0], "axes": "body", "magnitude": 3
-    }}});
-    let text = fault(&follower);
-    assert!(text.contains("no potential"), "{text}");
 }

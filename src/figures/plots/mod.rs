@@ -4,6 +4,7 @@
 //! data. The same data give the same bytes.
 
 mod axis;
+mod campbell;
 mod canvas;
 mod colours;
 mod connectors;
@@ -19,6 +20,7 @@ mod structure;
 mod sweep;
 mod work_precision;
 
+pub use campbell::{CampbellPoint, Sense, campbell};
 pub use connectors::{Connector, ConnectorKind};
 pub use convergence::convergence;
 pub use energy::{EnergyRun, energy};

@@ -92,6 +92,14 @@ pub enum AssemblyFailure {
         /// Number of iterations.
         iterations: usize,
     },
+    /// A machine cannot turn steadily about an axis.
+    #[error(
+        "no steady rotation: the machine is not the same after it has turned about the axis; {why}"
+    )]
+    NotAlike {
+        /// What is not.
+        why: String,
+    },
     /// Rest has no such modes of vibration.
     #[error("no natural frequencies about rest: {why}")]
     NoModes {

@@ -242,15 +242,17 @@ fn of_case(
 /// Replaces the values of a document by those of a case.
 fn change(document: &mut Value, (name, case): (&str, &WrittenCase)) -> Result<(), Finding> {
     if let Some(analysis) = case.analysis {
-        document["analysis"] = match analysis {
-            Analysis::Motion => json!("motion"),
-            Analysis::Rest => json!("rest"),
+        // What belongs to other analyses.
+        const OF_MOTION: [&str; 3] = ["simulation", "start", "initial_velocity"];
+        const OF_MODES: [&str; 2] = ["modes", "turning"];
+        let (name, others) = match analysis {
+            Analysis::Motion => ("motion", OF_MODES.to_vec()),
+            Analysis::Rest => ("rest", [&OF_MOTION[..], &OF_MODES].concat()),
+            Analysis::Modes => ("modes", OF_MOTION.to_vec()),
         };
-        if analysis == Analysis::Rest
-            && let Value::Object(entries) = &mut *document
-        {
-            // They belong to the motions of other cases.
-            for key in ["simulation", "start", "initial_velocity"] {
+        document["analysis"] = json!(name);
+        if let Value::Object(entries) = &mut *document {
+            for key in others {
                 entries.shift_remove(key);
             }
         }

@@ -26,7 +26,15 @@ const OF_ALL_CASES: [&str; 9] = [
     "plot",
 ];
 /// Sections without a part in the mass.
-const WITHOUT_MASS: [&str; 5] = ["gravity", "loads", "drives", "simulation", "load_cases"];
+const WITHOUT_MASS: [&str; 7] = [
+    "gravity",
+    "loads",
+    "drives",
+    "simulation",
+    "load_cases",
+    "modes",
+    "turning",
+];
 
 /// What a document states of its cases.
 pub(crate) struct Stated {

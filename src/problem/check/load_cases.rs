@@ -121,7 +121,15 @@ impl Checker<'_> {
             }
             Function::Misfit(misfit) => self.numbers(&at("misfit"), misfit),
             Function::VonMises(stress) => self.stress(&at("von_mises"), stress),
-            Function::Frequency(_) | Function::LowestFrequency(_) => self.densities("a frequency"),
+            Function::Frequency(own) => {
+                if own.damped {
+                    let found = "a damped frequency of structures";
+                    let expected = "none: structures have no damping";
+                    self.fault(Finding::new(at("frequency/damped"), found, expected).of_key());
+                }
+                self.densities("a frequency");
+            }
+            Function::LowestFrequency(_) => self.densities("a frequency"),
             // Their names are checked where they are read.
             Function::Expression(_) | Function::OverCases(_) => {}
             Function::Ks(_)
@@ -134,6 +142,8 @@ impl Checker<'_> {
             | Function::FatigueDamage(_)
             | Function::Value(_)
             | Function::Clearance(_)
+            | Function::DampingRatio(_)
+            | Function::CriticalSpeed(_)
             | Function::Duration => {
                 let expected = "a function of structures, such as \"mass\", or a \"simulation\"";
                 self.fault(Finding::new(pointer, "a function of a motion", expected));

@@ -17,6 +17,7 @@ impl Checker<'_> {
             let expected = "\"rest\", or \"bodies\" with \"elements\"";
             self.fault(Finding::new("/analysis", found, expected));
         }
+        self.modes();
         if !document.is_rest() {
             return;
         }
@@ -61,6 +62,49 @@ impl Checker<'_> {
         }
     }
 
+    /// Checks the modes that are told, and steady rotation.
+    fn modes(&mut self) {
+        let document = self.document;
+        let told = document.told_modes().is_some();
+        if document.analysis == Some(Analysis::Modes) && !document.structures.is_empty() {
+            let expected =
+                "\"rest\" or none: \"frequency\" among \"functions\" asks for modes of structures";
+            let finding = Finding::new("/analysis", "\"modes\" of structures", expected);
+            self.fault(finding);
+        } else if !told && !self.damage.touches("analysis") {
+            let given = [
+                ("modes", document.modes.is_some()),
+                ("turning", document.turning.is_some()),
+            ];
+            for (key, _) in given.into_iter().filter(|(_, given)| *given) {
+                let found = format!("\"{key}\" without \"analysis\": \"modes\"");
+                let finding = Finding::new(join("", key), found, "both");
+                self.fault(finding.of_key());
+            }
+        }
+        let speeds = document.modes.iter().flat_map(|own| &own.speeds);
+        for (k, &speed) in speeds.enumerate() {
+            if speed < 0.0 {
+                let expected = "a speed of rotation, not below 0: the axis says its sense";
+                let pointer = join("/modes/speeds", k);
+                self.fault(Finding::new(pointer, speed.to_string(), expected));
+            }
+        }
+        let Some(turning) = &document.turning else {
+            let speeds = document
+                .modes
+                .as_ref()
+                .is_some_and(|own| !own.speeds.is_empty());
+            if speeds && !self.damage.touches("turning") {
+                let expected = "\"turning\", the axis of the rotation";
+                let found = "speeds of a machine that does not turn";
+                self.fault(Finding::new("/modes/speeds", found, expected).of_key());
+            }
+            return;
+        };
+        self.nonzero("/turning/axis", turning.axis);
+    }
+
     /// Checks that a function needs no time.
     pub(super) fn at_rest(&mut self, pointer: &str, function: &OfMotion) {
         let windowed = |over: &Over| match over {
@@ -74,7 +118,9 @@ impl Checker<'_> {
             OfMotion::Clearance(_)
             | OfMotion::Mass
             | OfMotion::Frequency(_)
-            | OfMotion::LowestFrequency(_) => false,
+            | OfMotion::LowestFrequency(_)
+            | OfMotion::DampingRatio(_)
+            | OfMotion::CriticalSpeed(_) => false,
             OfMotion::Integral(_)
             | OfMotion::Mean(_)
             | OfMotion::MeanSquare(_)
@@ -84,6 +130,33 @@ impl Checker<'_> {
             | OfMotion::Misfit(_)
             | OfMotion::Duration => true,
         };
+        let of_rest = match function {
+            OfMotion::Ks(_)
+            | OfMotion::InducedExponential(_)
+            | OfMotion::Final(_)
+            | OfMotion::Clearance(_) => true,
+            OfMotion::Integral(_)
+            | OfMotion::Mean(_)
+            | OfMotion::MeanSquare(_)
+            | OfMotion::MeanAbsolute(_)
+            | OfMotion::FatigueDamage(_)
+            | OfMotion::Value(_)
+            | OfMotion::Misfit(_)
+            | OfMotion::Duration
+            | OfMotion::Mass
+            | OfMotion::Frequency(_)
+            | OfMotion::LowestFrequency(_)
+            | OfMotion::DampingRatio(_)
+            | OfMotion::CriticalSpeed(_) => false,
+        };
+        if of_rest && self.document.turning.is_some() {
+            let found = "a function of a state, of a machine that turns";
+            let expected =
+                "frequencies, damping ratios, critical speeds, \"mass\" or expressions of them";
+            let hint = "a motion with \"start\": \"equilibrium\" has the state of steady rotation";
+            let finding = Finding::new(pointer, found, expected).of_key();
+            self.fault(finding.hint(Some(hint.to_owned())));
+        }
         if of_time {
             let found = "a function of time, of a machine at rest";
             let expected = "\"final\", the value at rest; \"ks\" over points; \"mass\"; \"frequency\"; or expressions of them";

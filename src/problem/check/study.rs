@@ -182,10 +182,17 @@ impl Checker<'_> {
             self.at_rest(pointer, &function);
         }
         match function {
-            OfMotion::Frequency(_) | OfMotion::LowestFrequency(_) => {
+            OfMotion::Frequency(_) | OfMotion::LowestFrequency(_) | OfMotion::DampingRatio(_) => {
                 if !self.document.is_rest() && !self.damage.touches("analysis") {
                     let found = "a natural frequency of a machine in motion";
                     let expected = "\"analysis\": \"rest\", about which the machine vibrates";
+                    self.fault(Finding::new(pointer, found, expected).of_key());
+                }
+            }
+            OfMotion::CriticalSpeed(_) => {
+                if self.document.turning.is_none() && !self.damage.touches("turning") {
+                    let found = "a critical speed of a machine that does not turn";
+                    let expected = "\"turning\", with \"analysis\": \"modes\"";
                     self.fault(Finding::new(pointer, found, expected).of_key());
                 }
             }

@@ -55,7 +55,9 @@ impl Checker<'_> {
             | OfMotion::Duration
             | OfMotion::Mass
             | OfMotion::Frequency(_)
-            | OfMotion::LowestFrequency(_) => {}
+            | OfMotion::LowestFrequency(_)
+            | OfMotion::DampingRatio(_)
+            | OfMotion::CriticalSpeed(_) => {}
         }
     }
 

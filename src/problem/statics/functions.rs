@@ -133,6 +133,8 @@ fn of(document: &Document, function: &Written, cuts: usize) -> Asked {
         | Written::Clearance(_)
         | Written::Duration
         | Written::OverCases(_)
+        | Written::DampingRatio(_)
+        | Written::CriticalSpeed(_)
         | Written::Expression(_) => {
             unreachable!(
                 "functions of a motion are refused before, and expressions are no functions of structures"

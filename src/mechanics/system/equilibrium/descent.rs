@@ -114,11 +114,14 @@ impl Solver<'_> {
             if step.size <= CLOSE || slow.len() == SLOW_STEPS {
                 // Later ones have drifted.
                 let end = slow.first().cloned().unwrap_or(x);
-                let growing = match away > PLACED && leaves < LEAVES {
+                // Gyroscopic forces may hold a machine that turns where its stiffness does not.
+                let leaves_it = away > PLACED && leaves < LEAVES && layout.turning.is_none();
+                let growing = match leaves_it {
                     true => self.growing(&mut factors, &end)?,
                     false => None,
                 };
                 let Some(along) = growing else {
+                    self.same_when_turned(&end)?;
                     self.known.keep(&self.numbers, &end);
                     return Ok(end);
                 };
@@ -161,7 +164,9 @@ impl Solver<'_> {
         change[layout.groups()[0].clone()].fill(0.0);
         layout.advance(&mut x, &change);
         let with_joints = self.rate(&layout.residual(self.model, self.given, &x));
-        x.rate = with_joints.max(LEAST_RATE * without_joints);
+        let turning = layout.turning.as_ref();
+        let spin = turning.map_or(0.0, |own| own.speed * own.speed);
+        x.rate = with_joints.max(LEAST_RATE * without_joints).max(spin);
         Ok(x)
     }
 

@@ -1,5 +1,6 @@
 //! The equations of the quasi-static start, and products with their derivative.
 
+use super::turning::Turning;
 use super::{Given, Sought};
 use crate::math::slices::{add_scaled, dot};
 use crate::math::{Dual, Parameters, Scalar};
@@ -62,6 +63,8 @@ pub(super) struct Layout<'a> {
     pub rigid: Vec<usize>,
     /// Rows of constraints that are independent while elastic coordinates are at rest.
     pub kept: Vec<usize>,
+    /// Steady rotation of a machine whose rest in the turning frame is sought.
+    pub turning: Option<Turning<f64>>,
 }
 
 fn picked<S: Scalar>(indices: &[usize], x: &[S]) -> Vec<S> {
@@ -74,7 +77,7 @@ impl<'a> Layout<'a> {
         model: &Model<f64>,
         numbering: &'a Numbering,
         left_out: &'a RedundantRows,
-        (placed, sought): (&[f64], Sought),
+        (given, sought): (&Given<f64>, Sought),
     ) -> Self {
         let mut moves = vec![sought == Sought::Start; numbering.unknowns()];
         for (carrier, k) in model.flexible.iter().flat_map(|body| body.places()) {
@@ -85,8 +88,9 @@ impl<'a> Layout<'a> {
             left_out,
             rigid: (0..moves.len()).filter(|&u| moves[u]).collect(),
             kept: Vec::new(),
+            turning: given.turning.clone(),
         };
-        layout.keep_independent(model, placed);
+        layout.keep_independent(model, &given.q);
         layout
     }
 
@@ -227,7 +231,10 @@ impl<'a> Layout<'a> {
         let (nv, nc) = (numbering.velocities(), numbering.constraints());
         let still = vec![S::zero(); nv];
         let (mut motions, mut gradients) = (Vec::new(), Vec::new());
-        let (a, v) = (self.of_rigid(&x.a), self.of_rigid(&x.v));
+        let [v, a] = match &given.turning {
+            Some(turning) => turning.velocities(model, numbering, &x.q),
+            None => [self.of_rigid(&x.v), self.of_rigid(&x.a)],
+        };
         BodyMotion::all(numbering, &x.q, &v, &mut motions);
         let at = InMotion::new(model, numbering, &motions, given.time);
         joints::gradients(&at, &mut gradients);
@@ -299,7 +306,7 @@ impl<'a> Layout<'a> {
         Along {
             layout: self,
             model: model.map(&mut |x| dual(x)),
-            given: given.map(dual),
+            given: given.map(&mut |x| dual(x)),
             at: at.map(|x| x),
         }
     }

@@ -2,6 +2,8 @@
 //! rest, [K + σ M̃, Gᵀ; G, 0] with the metric M̃ of [`RigidMetric`].
 
 use super::equations::{Layout, State};
+use super::pencil::emit_at;
+use super::turning::Weights;
 use crate::linalg::{Emit, KnownPivots, Pattern, SingularMatrix, SparseLu, SparseMatrix};
 use crate::math::Scalar;
 use crate::model::{Model, RigidBody};
@@ -237,8 +239,15 @@ fn emit_matrix(
     (model, x, shift): (&Model<f64>, &State<f64>, f64),
     emit: &mut dyn Emit<f64>,
 ) {
-    emit_balance(layout, (model, x), emit);
     let numbering = layout.numbering;
+    match &layout.turning {
+        Some(turning) => {
+            let at = (model, x, Some(turning));
+            let lambda = PARTS * numbering.velocities();
+            emit_at(layout, at, Weights::stiffness(), lambda, emit);
+        }
+        None => emit_balance(layout, (model, x), emit),
+    }
     let (nv, nc) = (numbering.velocities(), numbering.constraints());
     let (y, a, v, lambda) = (0, nv, 2 * nv, 3 * nv);
     let (sigma, tau) = (lambda + nc, lambda + 2 * nc);

@@ -19,14 +19,22 @@
 //! theorem, as in [`super::nearest`]. The matrix of these steps is exact by its products (dual numbers); the factors of
 //! a sparse one, without the derivatives of M and G in the rows of rigid motions, precondition it ([`gmres`]).
 
+mod critical;
+mod damped;
 mod descent;
+mod eigenpairs;
 mod equations;
+mod krylov;
 mod matrix;
 mod modes;
+mod pencil;
 mod rest;
 mod ritz;
+mod sameness;
 mod stability;
+mod turning;
 mod unsteady;
+mod whirl;
 
 use super::bodies::{positions_of, velocities_of};
 use super::failure::AssemblyFailure;
@@ -39,15 +47,22 @@ use super::redundant_rows::RedundantRows;
 use crate::linalg::gmres::gmres;
 use crate::math::{Parameters, Scalar};
 use crate::model::{Mobility, Model};
+pub use critical::CriticalSpeed;
+use critical::{Excited, critical_speed};
+pub use damped::DampedVibration;
+use damped::{Spectrum, damped_vibrations, undamped_vibrations};
 use equations::{Layout, State};
 use matrix::Factors;
 use modes::{Mode, vibrations};
 pub use modes::{Vibration, WantedModes};
+use pencil::At;
 use rest::FreeMotion;
 pub use rest::{Stability, stability};
 pub use stability::growth;
 use std::sync::{Arc, Mutex};
+pub use turning::Turning;
 pub use unsteady::left_out;
+pub use whirl::{MachineMode, Whirl, modes_of_machine};
 
 const ITERATIONS: usize = 60;
 /// Newton's method stops at this change of positions, relative to the length scale; and at `STAGNANT`, if changes do
@@ -76,7 +91,7 @@ pub enum Sought {
 const NEARBY: f64 = 1e-9;
 const SMALL: f64 = 1e-6;
 /// Number of starts that are kept.
-const KEPT: usize = 4;
+const KEPT: usize = 12;
 
 /// Known real starts, keyed by the numbers of their models, and the factors of the latest one. A scene is made
 /// repeatedly at one design, for its values and for each derivative.
@@ -87,7 +102,9 @@ pub struct KnownStarts(Arc<Mutex<Known>>);
 struct Known {
     states: Vec<(Vec<f64>, State<f64>)>,
     factors: Option<(Vec<f64>, Factors)>,
-    modes: Option<(Vec<f64>, Vec<Mode>)>,
+    modes: Option<(Vec<f64>, Option<Vec<Mode>>)>,
+    spectra: Vec<(Vec<f64>, Spectrum)>,
+    critical: Vec<(Vec<f64>, Excited)>,
     free: Option<(Vec<f64>, Vec<FreeMotion>)>,
 }
 
@@ -148,45 +165,65 @@ impl KnownStarts {
     }
 }
 
+/// What functions need of vibrations about rest, or about steady rotation.
+#[derive(Clone, Debug)]
+pub struct Vibrations<S> {
+    /// Natural frequencies; of a machine that turns, those with its damping and gyroscopic forces in the turning frame.
+    pub undamped: Vec<Vibration<S>>,
+    /// Those with damping, the lowest |s| first.
+    pub damped: Vec<DampedVibration<S>>,
+    /// Critical speeds.
+    pub critical: Vec<CriticalSpeed<S>>,
+}
+
+impl<S> Default for Vibrations<S> {
+    fn default() -> Self {
+        Self {
+            undamped: Vec::new(),
+            damped: Vec::new(),
+            critical: Vec::new(),
+        }
+    }
+}
+
+/// What is sought, and the vibrations that are wanted there.
+#[derive(Clone, Debug)]
+pub struct Request<S> {
+    /// What is sought.
+    pub sought: Sought,
+    /// Steady rotation: rest is that in the turning frame.
+    pub turning: Option<Turning<S>>,
+    /// The vibrations.
+    pub modes: WantedModes,
+}
+
 /// Moves the bodies of `model`, which are placed and undeformed, to the quasi-static start, and gives them velocities
-/// without vibration; or to rest. Gives the lowest vibrations about rest that are wanted.
+/// without vibration; or to rest, also in a turning frame. Gives the vibrations about rest that are wanted.
 ///
 /// # Errors
 /// Joints that cannot be closed, no equilibrium, or no such modes.
 pub fn settle<S: Scalar>(
     model: &mut Model<S>,
     known: &KnownStarts,
-    (sought, modes): (Sought, &WantedModes),
-) -> Result<Vec<Vibration<S>>, AssemblyFailure> {
+    request: &Request<S>,
+) -> Result<Vibrations<S>, AssemblyFailure> {
     let own = without_spin(model);
     let numbering = Numbering::new(&own);
-    let of = (&own, &numbering, sought);
-    let (state, v, vibrations) = with_solution(of, known, |given, solver, found| {
-        let layout = solver.layout;
-        let mut state: State<S> = found.map(S::from);
-        if S::INFINITESIMAL {
-            let residual = layout.residual(&own, given, &state);
-            let right: Vec<f64> = residual.iter().map(|x| -x.infinitesimal()).collect();
-            let change = solver.with_factors(found, |factors| {
-                let change = solver.change(factors, found, &right, FINE);
-                match sought {
-                    Sought::Start => Ok(change),
-                    Sought::Rest => solver.determined(factors, found, &right, change),
-                }
-            })??;
-            let change: Vec<S> = change.into_iter().map(S::of_infinitesimal).collect();
-            layout.advance(&mut state, &change);
-        }
-        let v = layout.of_rigid(&state.v);
-        let vibrations = match modes.is_empty() {
-            true => Vec::new(),
-            false => {
-                let modes = solver.known_modes(found, modes)?;
-                vibrations(layout, (&own, &state), &modes)
-            }
-        };
+    let of = (&own, &numbering, request.sought);
+    let turning = request.turning.as_ref();
+    let (state, v, mut vibrations) = with_solution(of, turning, known, |given, solver, found| {
+        let state = in_scalar(&own, given, (solver, found), Held::ByAll)?;
+        let v = solver.layout.of_rigid(&state.v);
+        let vibrations = solver.vibrations((&own, &state, turning), found, &request.modes)?;
         Ok((state, v, vibrations))
     })?;
+    if let Some(turning) = turning {
+        let machine = (&own, &numbering, known);
+        for number in 1..=request.modes.critical {
+            let speed = critical_speed(machine, turning, number)?;
+            vibrations.critical.push(speed);
+        }
+    }
     for (i, body) in model.bodies.iter_mut().enumerate() {
         (body.position, body.orientation) = positions_of(&state.q[numbering.position(i)..]);
         if numbering.mobility(i).unknowns() > 0 {
@@ -194,6 +231,44 @@ pub fn settle<S: Scalar>(
         }
     }
     Ok(vibrations)
+}
+
+/// How positions follow from the numbers of a model.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+enum Held {
+    /// Completely, or the change fails.
+    ByAll,
+    /// But for free motions, which stay as placed.
+    ButForFree,
+}
+
+/// The solution for a model in any scalar, exact to first order.
+fn in_scalar<S: Scalar>(
+    model: &Model<S>,
+    given: &Given<S>,
+    (solver, found): (&Solver, &State<f64>),
+    held: Held,
+) -> Result<State<S>, AssemblyFailure> {
+    let layout = solver.layout;
+    let mut state: State<S> = found.map(S::from);
+    if S::INFINITESIMAL {
+        let residual = layout.residual(model, given, &state);
+        let right: Vec<f64> = residual.iter().map(|x| -x.infinitesimal()).collect();
+        let change = solver.with_factors(found, |factors| {
+            let mut change = solver.change(factors, found, &right, FINE);
+            match (layout.is_rest(), held) {
+                (false, _) => Ok(change),
+                (true, Held::ByAll) => solver.determined(factors, found, &right, change),
+                (true, Held::ButForFree) => {
+                    solver.keep_as_placed(factors, found, &mut change)?;
+                    Ok(change)
+                }
+            }
+        })??;
+        let change: Vec<S> = change.into_iter().map(S::of_infinitesimal).collect();
+        layout.advance(&mut state, &change);
+    }
+    Ok(state)
 }
 
 /// The model with point masses that do not rotate.
@@ -216,7 +291,8 @@ fn at_solution<T>(
 ) -> Result<T, AssemblyFailure> {
     let own = without_spin(model);
     let numbering = Numbering::new(&own);
-    with_solution((&own, &numbering, sought), known, |_, solver, found| {
+    let sought = (&own, &numbering, sought);
+    with_solution(sought, None, known, |_, solver, found| {
         solver.with_factors(found, |factors| of(solver, factors, found))?
     })
 }
@@ -224,20 +300,25 @@ fn at_solution<T>(
 /// What `of` makes of the real solution for a model [`without_spin`], whose bodies are placed and undeformed.
 fn with_solution<S: Scalar, T>(
     (own, numbering, sought): (&Model<S>, &Numbering, Sought),
+    turning: Option<&Turning<S>>,
     known: &KnownStarts,
     of: impl FnOnce(&Given<S>, &Solver, &State<f64>) -> Result<T, AssemblyFailure>,
 ) -> Result<T, AssemblyFailure> {
     let placed = nearest(own)?.q;
-    let given = Given::of(own, numbering, placed);
+    let given = Given::of(own, numbering, (placed, turning));
     let mut numbers = vec![numbering.unknowns() as f64, numbering.constraints() as f64];
-    let mut real = own.map(&mut |x| {
+    let mut noted = |x: S| {
         numbers.push(x.re());
         x.re()
-    });
+    };
+    let mut real = own.map(&mut noted);
+    if let Some(turning) = turning {
+        turning.map(&mut noted);
+    }
     redundancy::leave_out(&mut real);
     let left_out = RedundantRows::of(&real, numbering);
-    let start = given.map(|x| x.re());
-    let layout = Layout::new(&real, numbering, &left_out, (&start.q, sought));
+    let start = given.map(&mut |x| x.re());
+    let layout = Layout::new(&real, numbering, &left_out, (&start, sought));
     let mut solver = Solver {
         layout: &layout,
         model: &real,
@@ -264,30 +345,38 @@ fn with_solution<S: Scalar, T>(
     of(&given, &solver, &found)
 }
 
-/// The placement of the bodies, their given velocities, and the time of drives and loads.
+/// The placement of the bodies, their given velocities, the time of drives and loads, and steady rotation.
 pub(super) struct Given<S> {
     q: Vec<S>,
     v: Vec<S>,
     time: S,
+    turning: Option<Turning<S>>,
 }
 
 impl<S: Scalar> Given<S> {
-    fn of(model: &Model<S>, numbering: &Numbering, q: Vec<S>) -> Self {
+    fn of(
+        model: &Model<S>,
+        numbering: &Numbering,
+        (q, turning): (Vec<S>, Option<&Turning<S>>),
+    ) -> Self {
         let (_, mut v) = guess(model);
         reduce::project(numbering, &mut v);
         Self {
             q,
             v,
             time: S::zero(),
+            turning: turning.cloned(),
         }
     }
 
-    fn map<T>(&self, of: impl Fn(S) -> T) -> Given<T> {
-        let all = |x: &[S]| x.iter().map(|&x| of(x)).collect();
+    fn map<T: Scalar>(&self, of: &mut dyn FnMut(S) -> T) -> Given<T> {
+        let mut all = |x: &[S]| x.iter().map(|&x| of(x)).collect();
+        let (q, v) = (all(&self.q), all(&self.v));
         Given {
-            q: all(&self.q),
-            v: all(&self.v),
+            q,
+            v,
             time: of(self.time),
+            turning: self.turning.as_ref().map(|own| own.map(of)),
         }
     }
 }
@@ -325,18 +414,51 @@ impl Solver<'_> {
         Ok(out)
     }
 
-    /// The lowest modes at a solution, which become known.
+    /// The lowest modes at a solution, which become known; `None` if loads have no potential.
     fn known_modes(
         &self,
         found: &State<f64>,
         wanted: &WantedModes,
-    ) -> Result<Vec<Mode>, AssemblyFailure> {
+    ) -> Result<Option<Vec<Mode>>, AssemblyFailure> {
         if let Some(modes) = self.known.modes(&self.numbers) {
             return Ok(modes);
         }
         let modes = self.with_factors(found, |factors| self.modes(factors, found, wanted))??;
         self.known.keep_modes(&self.numbers, &modes);
         Ok(modes)
+    }
+
+    /// The wanted vibrations about a solution in any scalar, without critical speeds.
+    fn vibrations<S: Scalar>(
+        &self,
+        at: At<S>,
+        found: &State<f64>,
+        wanted: &WantedModes,
+    ) -> Result<Vibrations<S>, AssemblyFailure> {
+        let (layout, mut out) = (self.layout, Vibrations::default());
+        if self.given.turning.is_some() {
+            let all = wanted.all_damped();
+            if !all.none_undamped() {
+                out.damped =
+                    damped_vibrations(layout, at, &self.spectrum(found, &all, (true, true))?);
+                out.undamped = out.damped.iter().map(DampedVibration::undamped).collect();
+            }
+            return Ok(out);
+        }
+        if !wanted.none_undamped() {
+            out.undamped = match self.known_modes(found, wanted)? {
+                Some(modes) => vibrations(layout, (at.0, at.1), &modes),
+                None => {
+                    undamped_vibrations(layout, at, &self.spectrum(found, wanted, (false, true))?)
+                }
+            };
+        }
+        if wanted.damped > 0 {
+            let wanted = wanted.damped_alone();
+            out.damped =
+                damped_vibrations(layout, at, &self.spectrum(found, &wanted, (true, true))?);
+        }
+        Ok(out)
     }
 
     /// Newton's method from the placement. The solution becomes known.

@@ -4,7 +4,7 @@
 //! K y + Gᵀ μ = ω² M y,     G y = 0,     K = −∂f/∂q + ∂(Gᵀ λ)/∂q
 //! ```
 //!
-//! K is symmetric if the loads have a potential. The largest eigenvalues 1 / (ω² + σ) of [K + σ M̃, Gᵀ; G, 0]⁻¹ M by
+//! K is symmetric if the loads have a potential; else see [`super::damped`]. The largest eigenvalues 1 / (ω² + σ) of [K + σ M̃, Gᵀ; G, 0]⁻¹ M by
 //! Lanczos, then Rayleigh and Ritz with K itself in their space. With yᵀ M y = 1 an eigenvalue has the derivative
 //!
 //! ```text
@@ -43,24 +43,52 @@ pub struct WantedModes {
     pub count: usize,
     /// All up to ρ (f − f_1) = 38, beyond which their weights are round-off; the smallest ρ \[s\].
     pub rho: Option<f64>,
+    /// So many with damping.
+    pub damped: usize,
+    /// So many critical speeds.
+    pub critical: usize,
 }
 
 impl WantedModes {
-    /// Whether none are wanted.
-    pub fn is_empty(&self) -> bool {
+    /// Whether no undamped ones are wanted.
+    pub(super) fn none_undamped(&self) -> bool {
         self.count == 0 && self.rho.is_none()
     }
 
-    fn least(&self) -> usize {
+    /// Those of a machine whose vibrations are all damped ones.
+    pub(super) fn all_damped(&self) -> Self {
+        Self {
+            count: self.count.max(self.damped),
+            ..*self
+        }
+    }
+
+    /// The damped ones alone.
+    pub(super) fn damped_alone(&self) -> Self {
+        Self {
+            count: self.damped,
+            rho: None,
+            ..*self
+        }
+    }
+
+    pub(super) fn least(&self) -> usize {
         self.count.max(if self.rho.is_some() { FIRST } else { 0 })
     }
 
     fn suffice(&self, modes: &[Mode]) -> bool {
         let frequency = |mode: &Mode| mode.square.max(0.0).sqrt() / (2.0 * std::f64::consts::PI);
-        let (Some(rho), Some(first), Some(last)) = (self.rho, modes.first(), modes.last()) else {
+        self.reach(&modes.iter().map(frequency).collect::<Vec<f64>>())
+    }
+
+    /// Whether an aggregate needs no frequencies beyond these.
+    pub(super) fn reach(&self, frequencies: &[f64]) -> bool {
+        let (Some(rho), Some(first), Some(last)) =
+            (self.rho, frequencies.first(), frequencies.last())
+        else {
             return true;
         };
-        let reach = rho * (frequency(last) - frequency(first));
+        let reach = rho * (last - first);
         // A ρ that is still to be chosen is not a number.
         reach.is_nan() || reach > NEGLIGIBLE
     }
@@ -146,16 +174,17 @@ impl Softened<'_> {
 }
 
 impl Solver<'_> {
-    /// The lowest modes at a solution that are wanted, with its factors. Free motions do not count.
+    /// The lowest modes at a solution that are wanted, with its factors; `None` if loads have no potential. Free motions do
+    /// not count.
     ///
     /// # Errors
-    /// Rest is not stable, loads have no potential, or there are fewer modes.
+    /// Rest is not stable, or there are fewer modes.
     pub(super) fn modes(
         &self,
         factors: &mut Factors,
         found: &State<f64>,
         wanted: &WantedModes,
-    ) -> Result<Vec<Mode>, AssemblyFailure> {
+    ) -> Result<Option<Vec<Mode>>, AssemblyFailure> {
         let none = |why: String| Err(AssemblyFailure::NoModes { why });
         let motions = self.layout.at_rest(&found.q);
         let mut softened = Softened {
@@ -192,10 +221,12 @@ impl Solver<'_> {
                     false => format!("only {there} modes converge"),
                 });
             }
-            let mut modes = self.ritz(&mut softened, found, space)?;
+            let Some(mut modes) = self.ritz(&mut softened, found, space)? else {
+                return Ok(None);
+            };
             modes.truncate(count);
             if all || wanted.suffice(&modes) {
-                return Ok(modes);
+                return Ok(Some(modes));
             }
             if count >= MOST_MODES {
                 return none(format!(
@@ -206,13 +237,13 @@ impl Solver<'_> {
         }
     }
 
-    /// The modes in the space of some motions.
+    /// The modes in the space of some motions; `None` if K is not symmetric.
     fn ritz(
         &self,
         softened: &mut Softened,
         found: &State<f64>,
         space: Vec<Vec<f64>>,
-    ) -> Result<Vec<Mode>, AssemblyFailure> {
+    ) -> Result<Option<Vec<Mode>>, AssemblyFailure> {
         let (layout, model) = (self.layout, self.model);
         let n = layout.numbering.unknowns();
         let along = layout.along(model, self.given, found);
@@ -236,8 +267,7 @@ impl Solver<'_> {
         };
         let (stiffness, mass) = (gram(1), gram(2));
         if (&stiffness - stiffness.transpose()).norm() > ASYMMETRIC * stiffness.norm() {
-            let why = "a load that turns with its body has no potential".into();
-            return Err(AssemblyFailure::NoModes { why });
+            return Ok(None);
         }
         let (squares, parts) = dense_pencil(&stiffness, mass).ok_or(AssemblyFailure::Singular)?;
         let near = |a: usize, b: usize| match (squares.get(a), squares.get(b)) {
@@ -255,7 +285,7 @@ impl Solver<'_> {
                 repeated: near(k, k + 1) || k > 0 && near(k - 1, k),
             }
         };
-        Ok(squares.iter().enumerate().map(one).collect())
+        Ok(Some(squares.iter().enumerate().map(one).collect()))
     }
 }
 
@@ -299,15 +329,15 @@ pub(super) fn vibrations<S: Scalar>(
 
 impl KnownStarts {
     /// The known modes of these numbers. One document always wants the same.
-    pub(super) fn modes(&self, numbers: &[f64]) -> Option<Vec<Mode>> {
+    pub(super) fn modes(&self, numbers: &[f64]) -> Option<Option<Vec<Mode>>> {
         let known = self.0.lock().ok()?;
         let (own, modes) = known.modes.as_ref()?;
         (own == numbers).then(|| modes.clone())
     }
 
-    pub(super) fn keep_modes(&self, numbers: &[f64], modes: &[Mode]) {
+    pub(super) fn keep_modes(&self, numbers: &[f64], modes: &Option<Vec<Mode>>) {
         if let Ok(mut known) = self.0.lock() {
-            known.modes = Some((numbers.to_vec(), modes.to_vec()));
+            known.modes = Some((numbers.to_vec(), modes.clone()));
         }
     }
 }

@@ -18,7 +18,7 @@ use crate::system::failure::AssemblyFailure;
 /// The smallest σ of factors, relative to the rate of the placement.
 pub(super) const FLOOR: f64 = 1e-6;
 /// A motion with a smaller stiffness, relative to the rate, is free.
-const FREE: f64 = 1e-10;
+pub(super) const FREE: f64 = 1e-10;
 /// A body takes part in a free motion if it moves by this part of the largest.
 const MOVES: f64 = 0.05;
 /// Inverse iterations of a free motion.
@@ -109,15 +109,25 @@ impl Solver<'_> {
                 .max(of_reactions * largest)
         });
         if sizes[0] <= UNSOLVED * sizes[1] {
-            // Free motions stay as placed: along them the least σ alone leaves round-off.
-            let n = self.layout.numbering.unknowns();
-            for own in self.free_motions(factors, found)? {
-                remove(&own, &mut change[..n]);
-            }
+            self.keep_as_placed(factors, found, &mut change)?;
             return Ok(change);
         }
         self.not_held(factors, found)?;
         Err(AssemblyFailure::Singular)
+    }
+
+    /// Removes free motions from a change: along them the least σ alone leaves round-off.
+    pub(super) fn keep_as_placed(
+        &self,
+        factors: &mut Factors,
+        found: &State<f64>,
+        change: &mut [f64],
+    ) -> Result<(), AssemblyFailure> {
+        let n = self.layout.numbering.unknowns();
+        for own in self.free_motions(factors, found)? {
+            remove(&own, &mut change[..n]);
+        }
+        Ok(())
     }
 
     /// Fails by the names of bodies that can move without stiffness, if there are some, with factors there.
@@ -248,7 +258,7 @@ impl Solver<'_> {
     }
 
     /// Adds the names of bodies that a motion moves.
-    fn name_moving(&self, y: &[f64], names: &mut Vec<String>) {
+    pub(super) fn name_moving(&self, y: &[f64], names: &mut Vec<String>) {
         let layout = self.layout;
         let all = layout.expanded(y.to_vec());
         let size = |i: usize| {

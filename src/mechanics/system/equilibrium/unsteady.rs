@@ -43,11 +43,13 @@ impl Solver<'_> {
             q: found.q.clone(),
             v: v.clone(),
             time: 0.0,
+            turning: None,
         };
         let mut later = Given {
             q: found.q.iter().map(|&x| still(x)).collect::<Vec<Dual>>(),
             v: v.iter().zip(&a).map(|(&v, &a)| Dual::new(v, a)).collect(),
             time: Dual::new(0.0, 1.0),
+            turning: None,
         };
         let moved: Vec<Dual> = v.iter().map(|&v| Dual::new(0.0, v)).collect();
         let mut increment = vec![still(0.0); later.q.len()];

@@ -1,0 +1,227 @@
+//! Vibrations of a machine with damping, about rest or about steady rotation, also under loads without potential: motions
+//! y e^{st} of [`super::pencil`], s = −ζ |s| ± i 2π f. With right and left vectors r and l, lᵀ (D + 2 s M) y = 1,
+//!
+//! ```text
+//! ds = −lᵀ (dK + s dD + s² dM) r
+//! ```
+//!
+//! with the rows of constraints in K, and with the change of rest. Eigenvalues that meet have the mean of their derivatives,
+//! so that sums over them have the derivative of the sum.
+
+use super::eigenpairs::{Cluster, clusters};
+use super::equations::{Layout, State};
+use super::krylov::lowest;
+use super::modes::{Vibration, WantedModes};
+use super::pencil::{At, Between, Matrices, contracted};
+use super::rest::FREE;
+use super::{KnownStarts, Solver};
+use crate::math::{Complex64, Scalar};
+use crate::structures::modes::MOST_MODES;
+use crate::system::failure::AssemblyFailure;
+use std::f64::consts::PI;
+
+/// Part of |s| by which a vibration may grow by round-off.
+const GROWS: f64 = 1e-6;
+/// Number of spectra that are known.
+const KEPT: usize = 4;
+
+/// A vibration y e^{st} with its rate s.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct DampedVibration<S> {
+    /// Re s \[1/s\]: negative if it decays.
+    pub growth: S,
+    /// Im s \[rad/s\], positive.
+    pub speed: S,
+    /// Whether another one has the same rate, so that it has no derivative of its own; sums over both have one.
+    pub repeated: bool,
+}
+
+impl<S: Scalar> DampedVibration<S> {
+    /// Frequency Im s / 2π \[Hz\].
+    pub fn frequency(&self) -> S {
+        self.speed / (2.0 * PI)
+    }
+
+    /// Damping ratio ζ = −Re s / |s|: 0 without damping, 1 where no oscillation is left, negative if it grows.
+    pub fn damping_ratio(&self) -> S {
+        -self.growth / (self.growth * self.growth + self.speed * self.speed).sqrt()
+    }
+
+    pub(super) fn undamped(&self) -> Vibration<S> {
+        Vibration {
+            frequency: self.frequency(),
+            repeated: self.repeated,
+        }
+    }
+}
+
+/// The rates of a machine, its lowest |s| first, by clusters.
+#[derive(Clone, Debug)]
+pub(super) struct Spectrum {
+    pub clusters: Vec<Cluster>,
+    /// Whether D is part of it.
+    pub damped: bool,
+    wanted: WantedModes,
+}
+
+impl Spectrum {
+    /// Cluster and place in it of each rate, by size |s|.
+    pub(super) fn order(&self) -> Vec<(usize, usize)> {
+        let all = self.clusters.iter().enumerate();
+        let mut all: Vec<(usize, usize)> = all
+            .flat_map(|(c, own)| (0..own.values.len()).map(move |k| (c, k)))
+            .collect();
+        let size = |&(c, k): &(usize, usize)| self.clusters[c].values[k].norm();
+        all.sort_by(|a, b| size(a).total_cmp(&size(b)));
+        all
+    }
+}
+
+/// Frequencies of rates \[Hz\], the size of the last one in its place: beyond it there are others of any.
+fn frequencies(rates: &[Complex64]) -> Vec<f64> {
+    let mut all: Vec<f64> = rates.iter().map(|s| s.im / (2.0 * PI)).collect();
+    all.sort_by(f64::total_cmp);
+    if let (Some(own), Some(last)) = (all.last_mut(), rates.last()) {
+        *own = last.norm() / (2.0 * PI);
+    }
+    all
+}
+
+impl Solver<'_> {
+    /// The vibrations of least |s| at a solution, so many as are wanted, or all if there are fewer and not all of them are
+    /// needed. Free motions and motions that do not oscillate do not count. The spectrum becomes known.
+    ///
+    /// # Errors
+    /// Rest is not stable, or there are fewer vibrations.
+    pub(super) fn spectrum(
+        &self,
+        found: &State<f64>,
+        wanted: &WantedModes,
+        (damped, all_needed): (bool, bool),
+    ) -> Result<Spectrum, AssemblyFailure> {
+        if let Some(known) = self.known.spectrum(&self.numbers, (wanted, damped)) {
+            return Ok(known);
+        }
+        let none = |why: String| Err(AssemblyFailure::NoModes { why });
+        let layout = self.layout;
+        let turning = self.given.turning.as_ref();
+        if turning.is_none() {
+            let stability = self.with_factors(found, |own| self.stability(own, found))??;
+            if stability.growth.is_some() {
+                return none("it is not stable".into());
+            }
+        }
+        let matrices = Matrices::new(layout, (self.model, found, turning), damped);
+        let rows = layout.numbering.constraints() - layout.left_out.numbers().count();
+        let allowed = matrices.unknowns.saturating_sub(rows);
+        let scales = (found.rate.sqrt(), (FREE * found.rate).sqrt());
+        // An aggregate needs one.
+        let asked = wanted.count.max(1);
+        let mut count = wanted.least().max(1);
+        let values = loop {
+            let own = lowest(&matrices, scales, (count, allowed))?;
+            let there = own.values.len();
+            if own.all && there < asked && all_needed {
+                return none(format!("mode {asked} is asked for, and there are {there}"));
+            }
+            if own.all || wanted.reach(&frequencies(&own.values)) {
+                break own.values;
+            }
+            if count >= MOST_MODES {
+                return none(format!(
+                    "more than {MOST_MODES} modes are within reach of ρ; a larger one needs fewer"
+                ));
+            }
+            count = (2 * count).min(MOST_MODES);
+        };
+        let values: Vec<Complex64> = values.into_iter().take(count).collect();
+        let clusters = clusters(&matrices, &values)?;
+        let mut rates = clusters.iter().flat_map(|own| &own.values);
+        if !damped && rates.any(|s| s.re.abs() > GROWS * s.norm()) {
+            return none("its oscillations grow without damping (flutter)".into());
+        }
+        let out = Spectrum {
+            clusters,
+            damped,
+            wanted: *wanted,
+        };
+        self.known.keep_spectrum(&self.numbers, &out);
+        Ok(out)
+    }
+}
+
+/// The vibrations of a spectrum in any scalar, at a solution in it, exact to first order.
+pub(super) fn damped_vibrations<S: Scalar>(
+    layout: &Layout,
+    at: At<S>,
+    spectrum: &Spectrum,
+) -> Vec<DampedVibration<S>> {
+    let mut changes = vec![Complex64::new(0.0, 0.0); spectrum.clusters.len()];
+    if S::INFINITESIMAL {
+        let mut pairs = Vec::new();
+        let mut of = Vec::new();
+        for (c, own) in spectrum.clusters.iter().enumerate() {
+            let count = own.values.len() as f64;
+            let mean = own.values.iter().sum::<Complex64>() / count;
+            let part = Complex64::new(-1.0 / count, 0.0);
+            let damping = if spectrum.damped { 1.0 } else { 0.0 };
+            for (left, right) in own.left.iter().zip(&own.right) {
+                of.push(c);
+                pairs.push(Between {
+                    left,
+                    right,
+                    factors: [part, part * mean * damping, part * mean * mean],
+                });
+            }
+        }
+        let sums = contracted(layout, at, &pairs);
+        for (c, [re, im]) in of.into_iter().zip(sums) {
+            // The real parts are zero but for what is not converged.
+            changes[c] += Complex64::new(re.infinitesimal(), im.infinitesimal());
+        }
+    }
+    let one = |(c, k): (usize, usize)| {
+        let own = &spectrum.clusters[c];
+        let with = |x: f64, dx: f64| S::from(x) + S::of_infinitesimal(dx);
+        DampedVibration {
+            growth: with(own.values[k].re, changes[c].re),
+            speed: with(own.values[k].im, changes[c].im),
+            repeated: own.values.len() > 1,
+        }
+    };
+    spectrum.order().into_iter().map(one).collect()
+}
+
+/// The same without damping, the lowest frequency first.
+pub(super) fn undamped_vibrations<S: Scalar>(
+    layout: &Layout,
+    at: At<S>,
+    spectrum: &Spectrum,
+) -> Vec<Vibration<S>> {
+    let all = damped_vibrations(layout, at, spectrum);
+    all.iter().map(DampedVibration::undamped).collect()
+}
+
+impl KnownStarts {
+    fn spectrum(
+        &self,
+        numbers: &[f64],
+        (wanted, damped): (&WantedModes, bool),
+    ) -> Option<Spectrum> {
+        let known = self.0.lock().ok()?;
+        let mut all = known.spectra.iter();
+        let own = all.find(|(own, spectrum)| {
+            own == numbers && spectrum.damped == damped && spectrum.wanted == *wanted
+        });
+        own.map(|(_, spectrum)| spectrum.clone())
+    }
+
+    fn keep_spectrum(&self, numbers: &[f64], spectrum: &Spectrum) {
+        if let Ok(mut known) = self.0.lock() {
+            if known.spectra.len() == KEPT {
+                known.spectra.remove(0);
+            }
+            known.spectra.push((numbers.to_vec(), spectrum.clone()));
+        }
+    }
+}

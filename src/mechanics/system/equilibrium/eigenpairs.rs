@@ -1,0 +1,233 @@
+//! Eigenvectors of small motions, right ones r = (y, μ) and left ones l, from good eigenvalues.
+//!
+//! Inverse iteration with the factors of Q(σ) = K + σ D + σ² M at a complex σ near an eigenvalue, for the pairs of
+//! [`super::krylov`] and their transpose,
+//!
+//! ```text
+//! Q r = −(D + 2 σ M) y − M w,  w ← y;     Qᵀ l = a,  a ← b − (D + 2 σ M)ᵀ l,  b ← −Mᵀ l
+//! ```
+//!
+//! has the eigenvectors themselves as limits. Eigenvalues that are nearly equal have a common space, whose bases are made
+//! such that l_iᵀ (D + 2 s M) y_j = δ_ij.
+
+use super::pencil::{Matrices, product};
+use crate::linalg::SparseLu;
+use crate::math::Complex64;
+use crate::system::failure::AssemblyFailure;
+use nalgebra::DMatrix;
+
+/// Inverse iterations.
+const ITERATIONS: usize = 8;
+/// Distance of σ from the eigenvalue, relative to it.
+const ASIDE: f64 = 1e-9;
+/// Relative distance of eigenvalues that form a cluster.
+const CLUSTER: f64 = 1e-6;
+/// Most iterations for the eigenvalues of a small matrix.
+const SWEEPS: usize = 10_000;
+
+/// Eigenvalues that are equal, but for a part of about 1e-6, with bases of their spaces.
+#[derive(Clone, Debug)]
+pub(super) struct Cluster {
+    pub values: Vec<Complex64>,
+    /// Right vectors with multipliers.
+    pub right: Vec<Vec<Complex64>>,
+    /// Left vectors with multipliers, not conjugated, biorthonormal to the right ones.
+    pub left: Vec<Vec<Complex64>>,
+}
+
+type Vector = Vec<Complex64>;
+
+fn dot(a: &[Complex64], b: &[Complex64]) -> Complex64 {
+    a.iter().zip(b).map(|(a, b)| a * b).sum()
+}
+
+/// Makes pairs orthonormal, both halves alike.
+fn orthonormalise(all: &mut [[Vector; 2]]) -> Option<()> {
+    for i in 0..all.len() {
+        for _ in 0..2 {
+            for j in 0..i {
+                let (before, rest) = all.split_at_mut(i);
+                let (own, other) = (&mut rest[0], &before[j]);
+                let along: Complex64 = (own.iter().zip(other))
+                    .flat_map(|(own, other)| own.iter().zip(other))
+                    .map(|(own, other)| own * other.conj())
+                    .sum();
+                for (own, other) in own.iter_mut().zip(other) {
+                    own.iter_mut()
+                        .zip(other)
+                        .for_each(|(own, other)| *own -= along * other);
+                }
+            }
+        }
+        let square: f64 = all[i].iter().flatten().map(|x| x.norm_sqr()).sum();
+        let size = square.sqrt();
+        if !(size > 0.0 && size.is_finite()) {
+            return None;
+        }
+        all[i].iter_mut().flatten().for_each(|x| *x /= size);
+    }
+    Some(())
+}
+
+struct Shifted<'a> {
+    matrices: &'a Matrices,
+    factors: SparseLu<Complex64>,
+    shift: Complex64,
+}
+
+impl Shifted<'_> {
+    /// (D + 2 σ M) x, or its transpose.
+    fn slope(&self, x: &[Complex64], transposed: bool) -> Vector {
+        let mut out = product(&self.matrices.damping, x, transposed);
+        let heavy = product(&self.matrices.mass, x, transposed);
+        let twice = self.shift * 2.0;
+        out.iter_mut()
+            .zip(&heavy)
+            .for_each(|(a, b)| *a += twice * b);
+        out
+    }
+
+    fn right(&mut self, [y, w]: &[Vector; 2]) -> [Vector; 2] {
+        let mut right = self.slope(y, false);
+        let heavy = product(&self.matrices.mass, w, false);
+        right
+            .iter_mut()
+            .zip(&heavy)
+            .for_each(|(a, b)| *a = -(*a + b));
+        self.factors.solve(&mut right);
+        // The multipliers are those of the solution, and have no part in products.
+        [right, y.clone()]
+    }
+
+    /// The next (a, b), and l.
+    fn left(&mut self, [a, b]: &[Vector; 2]) -> ([Vector; 2], Vector) {
+        let mut l = a.clone();
+        self.factors.solve_transposed(&mut l);
+        let mut next = self.slope(&l, true);
+        next.iter_mut().zip(b).for_each(|(x, b)| *x = b - *x);
+        let mut last = product(&self.matrices.mass, &l, true);
+        last.iter_mut().for_each(|x| *x = -*x);
+        ([next, last], l)
+    }
+}
+
+/// The eigenvectors of some eigenvalues, by clusters.
+///
+/// # Errors
+/// Singular equations.
+pub(super) fn clusters(
+    matrices: &Matrices,
+    values: &[Complex64],
+) -> Result<Vec<Cluster>, AssemblyFailure> {
+    let mut left: Vec<Complex64> = values.to_vec();
+    let mut all = Vec::new();
+    while !left.is_empty() {
+        let first = left.remove(0);
+        let (near, others): (Vec<_>, Vec<_>) =
+            (left.into_iter()).partition(|other| (other - first).norm() <= CLUSTER * first.norm());
+        left = others;
+        let own: Vec<Complex64> = std::iter::once(first).chain(near).collect();
+        all.push(cluster(matrices, &own).ok_or(AssemblyFailure::Singular)?);
+    }
+    Ok(all)
+}
+
+fn cluster(matrices: &Matrices, values: &[Complex64]) -> Option<Cluster> {
+    let p = values.len();
+    let mean = values.iter().sum::<Complex64>() / p as f64;
+    let shift = mean * Complex64::new(1.0 + ASIDE, ASIDE);
+    let factors = matrices.factors(shift).ok()?;
+    let mut shifted = Shifted {
+        matrices,
+        factors,
+        shift,
+    };
+    let order = matrices.order();
+    let start = |k: usize| -> [Vector; 2] {
+        [0, 1].map(|half| {
+            let any = |i: usize| ((1.0 + i as f64).sqrt() * (2.3 + k as f64)).fract() - 0.5;
+            let mut x: Vector = (0..order)
+                .map(|i| Complex64::new(any(2 * i + half), any(3 * i + 1 + half)))
+                .collect();
+            x[matrices.unknowns..].fill(Complex64::new(0.0, 0.0));
+            x
+        })
+    };
+    let mut rights: Vec<[Vector; 2]> = (0..p).map(start).collect();
+    let mut lefts = rights.clone();
+    let mut solved = vec![Vec::new(); p];
+    for _ in 0..ITERATIONS {
+        for own in &mut rights {
+            *own = shifted.right(own);
+        }
+        orthonormalise(&mut rights)?;
+        for (own, l) in lefts.iter_mut().zip(&mut solved) {
+            (*own, *l) = shifted.left(own);
+        }
+        orthonormalise(&mut lefts)?;
+        for (own, l) in lefts.iter().zip(&mut solved) {
+            *l = shifted.left(own).1;
+        }
+    }
+    finish(&shifted, (rights, solved))
+}
+
+/// The eigenvalues in the spaces of right and left vectors.
+fn finish(
+    shifted: &Shifted,
+    (rights, mut left): (Vec<[Vector; 2]>, Vec<Vector>),
+) -> Option<Cluster> {
+    let p = rights.len();
+    let right: Vec<Vector> = rights.into_iter().map(|[y, _]| y).collect();
+    let matrices = shifted.matrices;
+    for l in &mut left {
+        let size = l.iter().map(|x| x.norm_sqr()).sum::<f64>().sqrt();
+        l.iter_mut().for_each(|x| *x /= size);
+    }
+    let between = |of: &dyn Fn(&[Complex64]) -> Vector| {
+        let products: Vec<Vector> = right.iter().map(|r| of(r)).collect();
+        DMatrix::from_fn(p, p, |i, j| dot(&left[i], &products[j]))
+    };
+    let heavy = between(&|x| product(&matrices.mass, x, false));
+    let slope = between(&|x| shifted.slope(x, false));
+    let whole = between(&|x| {
+        let stiff = product(&matrices.stiffness, x, false);
+        let damped = product(&matrices.damping, x, false);
+        let heavy = product(&matrices.mass, x, false);
+        let s = shifted.shift;
+        let parts = stiff.iter().zip(&damped).zip(&heavy);
+        parts.map(|((k, d), m)| k + s * (d + s * m)).collect()
+    });
+    // lᵀ (Q + δ Q' + δ² M) y = 0 with a small δ.
+    let inverse = slope.clone().try_inverse()?;
+    let mut change = -(&inverse * &whole);
+    for _ in 0..3 {
+        change = -(&inverse * (&whole + &heavy * &change * &change));
+    }
+    let values: Vec<Complex64> = match p {
+        1 => vec![shifted.shift + change[(0, 0)]],
+        _ => {
+            let schur = change.clone().try_schur(f64::EPSILON, SWEEPS)?;
+            let own = schur.eigenvalues()?;
+            own.iter().map(|x| shifted.shift + x).collect()
+        }
+    };
+    // The slope at the mean of the eigenvalues.
+    let mean = change.trace() / Complex64::new(p as f64, 0.0);
+    let inverse = (slope + heavy * (mean * 2.0)).try_inverse()?;
+    let combined = |i: usize| {
+        let mut out = vec![Complex64::new(0.0, 0.0); matrices.order()];
+        for (j, l) in left.iter().enumerate() {
+            let part = inverse[(i, j)];
+            out.iter_mut().zip(l).for_each(|(out, l)| *out += part * l);
+        }
+        out
+    };
+    let left: Vec<Vector> = (0..p).map(combined).collect();
+    let finite = |x: &Complex64| x.re.is_finite() && x.im.is_finite();
+    (values.iter().all(finite)).then_some(Cluster {
+        values,
+        right,
+        left,
+    })
+}

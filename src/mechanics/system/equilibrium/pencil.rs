@@ -1,0 +1,233 @@
+//! The equations of small motions y e^{st} of a machine about its rest, or about steady rotation:
+//!
+//! ```text
+//! [K + s D + s² M, Gᵀ; G, 0] [y; μ] = 0,     K = ∂B/∂q,   D = ∂B/∂v,   B = M v̇ − f(q, v) + Gᵀ λ,
+//! ```
+//!
+//! where v and v̇ change as [`super::turning`] says.
+
+use super::equations::{Layout, State};
+use super::turning::{Steady, Turning, Weights};
+use crate::linalg::{Emit, Pattern, SingularMatrix, SolveScalar, SparseLu, SparseMatrix};
+use crate::math::{Complex64, Scalar};
+use crate::model::Model;
+use crate::system::bodies::BodyMotion;
+use crate::system::emit_bodies::{Rates, emit_force_balance};
+use crate::system::flexible;
+use crate::system::in_motion::InMotion;
+use crate::system::joints;
+use crate::system::kkt::{emit_gradients, emit_reaction_jacobian, emit_transposed_gradients};
+use crate::system::loads::{self, LoadEntries};
+use crate::system::reduce::emit_reduced;
+
+/// A model at a state, with its rotation.
+pub(super) type At<'a, S> = (&'a Model<S>, &'a State<S>, Option<&'a Turning<S>>);
+
+/// Emits K, D and M, each with its weight, and the rows of constraints with that of K. Columns and rows are those of unknowns
+/// of velocity and of constraints.
+pub(super) fn emit_pencil<S: Scalar>(
+    layout: &Layout,
+    at: At<S>,
+    weights: Weights<S>,
+    emit: &mut dyn Emit<S>,
+) {
+    emit_reduced(layout.numbering, 1, emit, |emit| {
+        emit_at(layout, at, weights, layout.numbering.velocities(), emit);
+    });
+}
+
+/// The same in velocity numbering, with the multipliers from `lambda` on.
+pub(super) fn emit_at<S: Scalar>(
+    layout: &Layout,
+    (model, x, turning): At<S>,
+    weights: Weights<S>,
+    lambda: usize,
+    emit: &mut dyn Emit<S>,
+) {
+    let numbering = layout.numbering;
+    let (nv, nc) = (numbering.velocities(), numbering.constraints());
+    let (y, v) = (0, lambda + nc);
+    let a = v + nv;
+    let [speeds, accelerations] = match turning {
+        Some(own) => own.velocities(model, numbering, &x.q),
+        None => [vec![S::zero(); nv], vec![S::zero(); nv]],
+    };
+    let (mut motions, mut gradients) = (Vec::new(), Vec::new());
+    BodyMotion::all(numbering, &x.q, &speeds, &mut motions);
+    let here = InMotion::new(model, numbering, &motions, S::zero());
+    joints::gradients(&here, &mut gradients);
+    layout.left_out.clear_gradients(&mut gradients);
+    let of = (model, numbering);
+    let k = weights.stiffness;
+    let columns = (weights, [v, a]);
+    let mut steady = Steady::new((model, numbering, &x.q), turning, columns, emit);
+    let rates = Rates {
+        by_state: S::zero(),
+        h: S::one(),
+    };
+    emit_force_balance(&here, (y, v), rates, &mut steady);
+    let moving = (&motions[..], &accelerations[..]);
+    flexible::emit_force_balances(of, moving, (y, y, v), (k, S::one()), &mut steady);
+    let to = LoadEntries {
+        row: y,
+        y,
+        v,
+        by_y: -k,
+        by_v: -S::one(),
+    };
+    loads::emit_jacobian(&here, &to, &mut steady);
+    for (i, body) in model.bodies.iter().enumerate() {
+        let o = numbering.velocity(i);
+        steady.add_identity(y + o, a + o, body.mass);
+        steady.add_block(y + o + 3, a + o + 3, &body.inertia);
+    }
+    flexible::emit_mass(of, &motions, (y, a), S::one(), &mut steady);
+    emit_reaction_jacobian(&here, &x.lambda, (y, y), k, &mut steady);
+    emit_transposed_gradients(model, numbering, &gradients, (y, lambda), k, &mut steady);
+    let mut scaled = Scaled {
+        by: k,
+        emit: &mut steady,
+    };
+    emit_gradients(model, numbering, &gradients, (lambda, y), &mut scaled);
+    for row in layout.left_out.numbers() {
+        scaled.add(lambda + row, lambda + row, S::one());
+    }
+}
+
+/// Emits every entry times a factor.
+struct Scaled<'a, S> {
+    by: S,
+    emit: &'a mut dyn Emit<S>,
+}
+
+impl<S: Scalar> Emit<S> for Scaled<'_, S> {
+    fn add(&mut self, row: usize, column: usize, value: S) {
+        self.emit.add(row, column, value * self.by);
+    }
+}
+
+/// K, D and M at a real state, with the rows of constraints in K.
+pub(super) struct Matrices {
+    /// Number of unknowns of velocity.
+    pub unknowns: usize,
+    pub stiffness: SparseMatrix<f64>,
+    pub damping: SparseMatrix<f64>,
+    pub mass: SparseMatrix<f64>,
+    pattern: Pattern,
+}
+
+impl Matrices {
+    /// Those at a state; without damping, D is zero.
+    pub(super) fn new(layout: &Layout, at: At<f64>, damped: bool) -> Self {
+        let order = layout.numbering.unknowns() + layout.numbering.constraints();
+        let pattern = Pattern::record(order, |to: &mut dyn Emit<f64>| {
+            emit_pencil(layout, at, Weights::at(1.0), to);
+        });
+        let of = |stiffness: f64, damping: f64, mass: f64| {
+            let mut matrix = SparseMatrix::new(pattern.clone());
+            let weights = Weights {
+                stiffness,
+                damping,
+                mass,
+            };
+            matrix.assemble(|to| emit_pencil(layout, at, weights, to));
+            matrix
+        };
+        Self {
+            unknowns: layout.numbering.unknowns(),
+            stiffness: of(1.0, 0.0, 0.0),
+            damping: of(0.0, if damped { 1.0 } else { 0.0 }, 0.0),
+            mass: of(0.0, 0.0, 1.0),
+            pattern,
+        }
+    }
+
+    /// Number of unknowns and multipliers.
+    pub(super) fn order(&self) -> usize {
+        self.pattern.order()
+    }
+
+    /// K + s D + s² M.
+    fn combined<S: Scalar>(&self, s: S) -> SparseMatrix<S> {
+        let mut out = SparseMatrix::new(self.stiffness.pattern.clone());
+        let parts = self.stiffness.values.iter().zip(&self.damping.values);
+        for (out, ((&k, &d), &m)) in (out.values.iter_mut()).zip(parts.zip(&self.mass.values)) {
+            *out = (s * m + d) * s + k;
+        }
+        out
+    }
+
+    /// Factors of K + s D + s² M.
+    ///
+    /// # Errors
+    /// A singular matrix.
+    pub(super) fn factors<S: SolveScalar>(&self, s: S) -> Result<SparseLu<S>, SingularMatrix> {
+        let mut factors = SparseLu::new(&self.pattern);
+        factors.factorise(&self.combined(s))?;
+        Ok(factors)
+    }
+}
+
+/// A x for a real matrix and a complex vector; Aᵀ x if `transposed`.
+pub(super) fn product(
+    matrix: &SparseMatrix<f64>,
+    x: &[Complex64],
+    transposed: bool,
+) -> Vec<Complex64> {
+    let mut out = vec![Complex64::new(0.0, 0.0); matrix.pattern.order()];
+    let (starts, rows) = (matrix.pattern.column_starts(), matrix.pattern.rows());
+    for j in 0..out.len() {
+        for k in starts[j]..starts[j + 1] {
+            let (to, from) = if transposed {
+                (j, rows[k])
+            } else {
+                (rows[k], j)
+            };
+            out[to] += x[from] * matrix.values[k];
+        }
+    }
+    out
+}
+
+/// A pair of vectors, and the factors of K, D and M between them.
+pub(super) struct Between<'a> {
+    pub left: &'a [Complex64],
+    pub right: &'a [Complex64],
+    pub factors: [Complex64; 3],
+}
+
+/// By pair: real and imaginary part of lᵀ (a K + b D + c M) r in any scalar, with the rows of constraints in K.
+pub(super) fn contracted<S: Scalar>(layout: &Layout, at: At<S>, pairs: &[Between]) -> Vec<[S; 2]> {
+    let mut sums = vec![[S::zero(); 2]; pairs.len()];
+    for which in 0..3 {
+        let weight = |k: usize| if k == which { S::one() } else { S::zero() };
+        let weights = Weights {
+            stiffness: weight(0),
+            damping: weight(1),
+            mass: weight(2),
+        };
+        let mut product = Contracted {
+            pairs,
+            which,
+            sums: &mut sums,
+        };
+        emit_pencil(layout, at, weights, &mut product);
+    }
+    sums
+}
+
+struct Contracted<'a, S> {
+    pairs: &'a [Between<'a>],
+    which: usize,
+    sums: &'a mut [[S; 2]],
+}
+
+impl<S: Scalar> Emit<S> for Contracted<'_, S> {
+    fn add(&mut self, row: usize, column: usize, value: S) {
+        for (pair, sum) in self.pairs.iter().zip(self.sums.iter_mut()) {
+            let weight = pair.left[row] * pair.right[column] * pair.factors[self.which];
+            sum[0] += value * weight.re;
+            sum[1] += value * weight.im;
+        }
+    }
+}
