@@ -21,6 +21,7 @@ mod fits;
 mod flight;
 mod forces;
 mod machine_modes;
+mod outlines;
 pub mod page;
 pub mod plots;
 pub mod report_page;

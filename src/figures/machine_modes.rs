@@ -3,7 +3,7 @@
 use super::detail::Detail;
 use super::elastic_figures::elastic;
 use super::error::FigureError;
-use super::files::{outline, scenery};
+use super::outlines::{outline, scenery};
 use super::shells;
 use crate::driver::Simulation;
 use crate::driver::modes::{ToldModes, told};
