@@ -292,6 +292,66 @@ fn the_worst_case_decides_the_optimum() {
     assert!(constraints["height in light"].multiplier.abs() < 1e-3);
 }
 
+/// A mass on a spring in motion, at rest and for its modes: ω² = k/m, and ζ = c/(2 √(k m)).
+#[test]
+fn frequencies_of_cases_are_those_of_their_masses() {
+    let file = json!({
+        "version": 1, "name": "sprung", "analysis": "modes", "gravity": [0, -9.81, 0],
+        "bodies": {"pan": {"shape": {"sphere": {"radius": 0.1}}, "mass": 1, "place": {"at": [0, -1, 0]}}},
+        "joints": {"guide": {"prismatic": {"between": ["pan", "ground"], "at": [0, -1, 0], "axis": [0, 1, 0]}}},
+        "loads": {"spring": {"spring": {"between": ["pan", "ground"], "at": {"a": [0, 0, 0], "b": [0, 0, 0]},
+                                        "rest_length": 1, "stiffness": 500, "damping": 3}}},
+        "cases": {
+            "light": {"set": {"/bodies/pan/mass": 2}},
+            "heavy": {"analysis": "rest", "set": {"/bodies/pan/mass": 8}},
+            "let go": {"analysis": "motion", "set": {"/simulation": {"duration": 0.1, "steps": 20}}}
+        },
+        "functions": {
+            "first": {"frequency": {"mode": 1}},
+            "ratio": {"damping_ratio": {"mode": 1}},
+            "fall": {"final": {"position": {"body": "pan", "direction": [0, 1, 0]}}},
+            "least": {"over_cases": {"function": "first", "cases": ["light", "heavy"], "by": {"ks": {"rho": 40, "of": "smallest"}}}},
+            "worst": {"expression": "'ratio in light' + 0*'fall in let go'/1"}
+        },
+        "variables": {
+            "stiffness": {"path": "/loads/spring/spring/stiffness", "lower": 100, "upper": 1000},
+            "damping": {"path": "/loads/spring/spring/damping", "lower": 1, "upper": 10}
+        }
+    });
+    let problem = parsed(&file);
+    let of = |name: &str| value(&problem, name);
+    let omega = |mass: f64| (500.0_f64 / mass).sqrt() / std::f64::consts::TAU;
+    for (name, expected) in [
+        ("first in light", omega(2.0)),
+        ("first in heavy", omega(8.0)),
+        ("ratio in light", 3.0 / (2.0 * 1000.0_f64.sqrt())),
+    ] {
+        assert!(
+            (of(name) / expected - 1.0).abs() < 1e-9,
+            "{name}: {} {expected}",
+            of(name)
+        );
+    }
+    assert!(
+        !problem
+            .function_names
+            .contains(&"first in let go".to_owned())
+    );
+    let f = number(&problem, "least");
+    assert_eq!(
+        simulated(&problem).smoothed(f).expect("smoothed").value,
+        of("first in heavy")
+    );
+    let all = flexbody_driver::check(&problem, &problem.start()).expect("derivatives");
+    for own in all {
+        let off = (own.adjoint - own.complex_step).abs();
+        assert!(
+            off <= 1e-11 * own.complex_step.abs() || own.is_round_off(),
+            "{own:?}"
+        );
+    }
+}
+
 /// The jib of the crane as a stiff bar: the pull of the rope balances the payload and half the weight about the foot.
 #[test]
 fn the_crane_pulls_as_statics_says() {
