@@ -181,7 +181,8 @@ class Generator:
                         return "Matrix"
                 return f"Sequence[{inner}]"
             case "object":
-                return f"Mapping[str, {self.type(content['additionalProperties'])}]"
+                inner = content["additionalProperties"]
+                return f"Mapping[str, {'object' if inner is True else self.type(inner)}]"
         if "anyOf" in content:
             return " | ".join(self.type(option) for option in content["anyOf"])
         raise SystemExit(f"cannot write the type of {schema}")
@@ -221,7 +222,8 @@ class Generator:
                 words = "texts" if words == "text" else words
                 return f"list of {size + ' ' if size != 'n' else ''}{words}"
             case "object":
-                return f"{self.words(content['additionalProperties'])} by name"
+                inner = content["additionalProperties"]
+                return f"{'any values' if inner is True else self.words(inner)} by name"
         raise SystemExit(f"cannot describe {schema}")
 
     def documentation(self, text: str, properties: dict[str, Schema], required: list[str], extra: str = "") -> str:

@@ -136,6 +136,10 @@ __all__ = [
     "Barrier",
     "StressAggregate",
     "StressPer",
+    "WhichCases",
+    "AllCases",
+    "ByCases",
+    "Extreme",
     "WhichFunction",
     "ExpressionOfFunctions",
     "OptimisationMethod",
@@ -202,6 +206,7 @@ __all__ = [
     "data_file",
     "measured_number",
     "barrier",
+    "by_caseses",
     "expression_of_functions",
     "joint_defaults",
     "MachineKeys",
@@ -611,6 +616,12 @@ class Barrier(Part):
     __slots__ = ()
 
 
+class ByCases(Part):
+    """What is taken of the values f_c of a function in several cases, with weights w_c. Made by `by_caseses`."""
+
+    __slots__ = ()
+
+
 class ExpressionOfFunctions(Part):
     """An expression of functions. Made by `expression_of_functions`."""
 
@@ -760,6 +771,15 @@ StressAggregate: TypeAlias = Literal["ks", "induced_exponential"]
 
 StressPer: TypeAlias = Literal["thickness"]
 """What has an aggregate of its own."""
+
+AllCases: TypeAlias = Literal["all"]
+"""All cases."""
+
+WhichCases: TypeAlias = Union[AllCases, Sequence[str], Mapping[str, Real]]
+"""The cases of a function over cases."""
+
+Extreme: TypeAlias = Literal["largest", "smallest"]
+"""A largest or smallest value."""
 
 WhichFunction: TypeAlias = Union[str, ExpressionOfFunctions]
 """A function: its name, or an expression of functions."""
@@ -4396,6 +4416,30 @@ class functions(Kinds):
 
     @staticmethod
     @checked
+    def over_cases(
+        *,
+        function: str,
+        by: ByCases | Literal["sum", "mean", "deviation"],
+        cases: WhichCases | None = None,
+    ) -> Function:
+        """Sum, mean, deviation or extreme of the values of a function in several cases.
+
+        Parameters
+        ----------
+        function : text
+            Name of a function of the machine, which has a value in each case.
+        by : one of `by_caseses` or "sum" or "mean" or "deviation"
+            What is taken of the values.
+        cases : "all" or list of texts or number by name, optional
+            "all" (default), a list of names, or the weight of each case by its name.
+            "all": "all".
+            list of texts: Some, by name, with equal weights.
+            number by name: Weights by name.
+        """
+        return made(Function, "functions.over_cases", locals())
+
+    @staticmethod
+    @checked
     def damping_ratio(*, mode: Integer) -> Function:
         """Damping ratio of a mode of a machine: 0 without damping, 1 where no oscillation is left, below 0 if it grows.
 
@@ -4432,6 +4476,36 @@ class functions(Kinds):
         return made_of(Function, "functions.expression", value)
 
 
+class by_caseses(Kinds):
+    """What is taken of the values f_c of a function in several cases, with weights w_c."""
+
+    sum: Final[Literal["sum"]] = "sum"
+    """Their sum Σ w_c f_c."""
+
+    mean: Final[Literal["mean"]] = "mean"
+    """Their mean m = Σ w_c f_c / Σ w_c."""
+
+    deviation: Final[Literal["deviation"]] = "deviation"
+    """Their standard deviation √(Σ w_c (f_c − m)² / Σ w_c). It has no derivative where all are equal."""
+
+    @staticmethod
+    @checked
+    def ks(*, rho: Real | None = None, of: Extreme | None = None) -> ByCases:
+        """A smooth bound of the largest or the smallest, without weights.
+
+        Parameters
+        ----------
+        rho : number above 0 [1/unit of the function], optional
+            Aggregation parameter in 1/unit of the function; larger is closer to the largest. Default: chosen at the
+            start.
+        of : "largest" or "smallest", optional
+            The largest value (default), or the smallest, which is bounded from below.
+            "largest": The largest.
+            "smallest": The smallest.
+        """
+        return made(ByCases, "by_caseses.ks", locals())
+
+
 class MachineKeys(Document):
     """A multibody scene in motion, or structures under load cases; what is asked of them and what may be designed.
     Units are SI, angles are in radians; the keys of bodies, joints, loads, drives, structures, materials, load
@@ -4460,6 +4534,7 @@ class MachineKeys(Document):
         "materials",
         "load_cases",
         "statics",
+        "cases",
         "functions",
         "variables",
         "objective",
@@ -4860,6 +4935,33 @@ class MachineKeys(Document):
             "six": Also the rotation about the normal, with a small drilling stiffness.
         """
         self._set("statics", "set_statics", locals())
+
+    @checked
+    def add_case(
+        self,
+        name: str,
+        *,
+        analysis: Analysis | None = None,
+        set: Mapping[str, object] | None = None,
+    ) -> Name:
+        """Adds a case.
+
+        An analysis of the machine of the file with some values replaced.
+
+        Parameters
+        ----------
+        name : text
+            Its name among the `cases`.
+        analysis : "motion" or "rest" or "modes", optional
+            What is computed, default what the file says.
+            "motion": Its motion over time.
+            "rest": Where it rests: without velocity and acceleration, drives and loads held as they are at t = 0.
+            "modes": Its vibrations about rest, or about steady rotation: frequencies, damping ratios and shapes.
+        set : any values by name, optional
+            Values that replace those of the file, by their JSON Pointer: {"/loads/wind/force/magnitude": 12}. The
+            number of a design variable cannot be replaced.
+        """
+        return Name(name, self._add("cases", "case", name, keys(locals(), "name")))
 
     @checked
     def add_function(self, name: str, kind: Function | Literal["duration", "mass"]) -> Name:

@@ -27,7 +27,7 @@ pub struct OverCases {
     /// "all" (default), a list of names, or the weight of each case by its name.
     pub cases: Option<WhichCases>,
     /// What is taken of the values.
-    pub by: ByCases,
+    pub by: CaseCombination,
 }
 
 /// The cases of a function over cases.
@@ -59,7 +59,7 @@ pub enum AllCases {
 /// What is taken of the values f_c of a function in several cases, with weights w_c.
 #[derive(Clone, Debug, Deserialize, JsonSchema)]
 #[serde(rename_all = "snake_case", deny_unknown_fields)]
-pub enum ByCases {
+pub enum CaseCombination {
     /// Their sum Σ w_c f_c.
     Sum,
     /// Their mean m = Σ w_c f_c / Σ w_c.

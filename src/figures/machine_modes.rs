@@ -124,11 +124,12 @@ fn shape(
     let rates = |of: fn(&Complex64) -> f64| -> Vec<f64> {
         let along: Vec<f64> = mode.shape.iter().map(of).collect();
         let other = drawn(&moved(&along, slight));
-        let pairs = other.iter().flatten().zip(rest.iter().flatten());
-        pairs
-            .flat_map(|(a, b)| [a[0] - b[0], a[1] - b[1]])
-            .map(|x| x / slight)
-            .collect()
+        let pairs = other.iter().zip(&rest);
+        let of_body = |(a, b): (&Vec<[f64; 2]>, &Vec<[f64; 2]>)| {
+            let pairs = supports(a).into_iter().zip(supports(b));
+            pairs.map(|(a, b)| (a - b) / slight).collect::<Vec<f64>>()
+        };
+        pairs.flat_map(of_body).collect()
     };
     let (real, imaginary) = (rates(|y| y.re), rates(|y| y.im));
     let pairs = real.iter().zip(&imaginary);
@@ -184,6 +185,15 @@ fn shape(
         traces: Vec::new(),
         flight: None,
         coloured: None,
+    })
+}
+
+/// How far an outline reaches in eight directions. Its corners may be others as soon as it moves, but not these.
+fn supports(outline: &[[f64; 2]]) -> [f64; 8] {
+    std::array::from_fn(|k| {
+        let (sin, cos) = (std::f64::consts::FRAC_PI_4 * k as f64).sin_cos();
+        let along = outline.iter().map(|[x, y]| x * cos + y * sin);
+        along.fold(f64::NEG_INFINITY, f64::max)
     })
 }
 

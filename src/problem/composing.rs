@@ -11,7 +11,7 @@ use super::pointer::{advice, join};
 use super::prune::Damage;
 use super::source::Source;
 use crate::math::unit::Unit;
-use crate::schema::cases::{ByCases, Extreme, OverCases};
+use crate::schema::cases::{CaseCombination, Extreme, OverCases};
 use crate::schema::functions::{Function, WhichFunction};
 use crate::schema::{Document, Objective};
 use indexmap::IndexMap;
@@ -326,9 +326,9 @@ fn over_cases(written: &Document, own: &OverCases) -> Expression<Placed> {
     let total: f64 = weights.iter().map(|(_, weight)| weight).sum();
     let mean = || both(Operator::Over, of_all(), number(total));
     match &own.by {
-        ByCases::Sum => of_all(),
-        ByCases::Mean => mean(),
-        ByCases::Deviation => {
+        CaseCombination::Sum => of_all(),
+        CaseCombination::Mean => mean(),
+        CaseCombination::Deviation => {
             let square = |&(case, w): &(&str, f64)| {
                 let distance = both(Operator::Minus, value(case), mean());
                 weighted(w, both(Operator::Power, distance, number(2.0)))
@@ -337,7 +337,7 @@ fn over_cases(written: &Document, own: &OverCases) -> Expression<Placed> {
             let variance = both(Operator::Over, squares, number(total));
             Expression::Call(Call::Sqrt, Box::new(variance))
         }
-        ByCases::Ks(ks) => {
+        CaseCombination::Ks(ks) => {
             let rho = rho_of(ks.rho);
             let all = weights.iter().map(|(case, _)| value(case));
             match ks.of.unwrap_or_default() {

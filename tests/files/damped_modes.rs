@@ -2,9 +2,9 @@
 //! derivatives, and what has none.
 
 use super::machines_at_rest::{fault, hinge, machine, rod};
-use crate::reference::documents::{problem as parsed, values};
+use crate::reference::documents::{problem as parsed, read, values};
 use crate::reference::gradients::gradients_are_exact;
-use flexbody_driver::{Simulated, check};
+use flexbody_driver::{Simulated, check, simulate};
 use nalgebra::DMatrix;
 use serde_json::Value;
 use std::f64::consts::PI;
@@ -406,4 +406,59 @@ fn what_has_no_damped_modes_is_told() {
         text.contains("a natural frequency of a machine in motion"),
         "{text}"
     );
+}
+
+/// The modes of the lamp move its arms as far as can be seen, and no farther.
+#[test]
+fn pictures_show_the_shapes() {
+    let mut file = read("problems/desk_lamp.json");
+    file["analysis"] = json!("modes");
+    let problem = parsed(&file);
+    let shown = simulate(&problem, &problem.start()).expect("a rest");
+    let all = flexbody_figures::of_simulation(&problem, &shown);
+    let svg = all
+        .iter()
+        .find(|(name, _)| *name == "modes.svg")
+        .expect("a picture");
+    let text = std::str::from_utf8(&svg.1).expect("UTF-8");
+    let outline = |element: &str| -> [f64; 4] {
+        let (_, points) = element.split_once("points=\"").expect("points");
+        let (points, _) = points.split_once('"').expect("an end");
+        let mut found = [
+            f64::INFINITY,
+            f64::NEG_INFINITY,
+            f64::INFINITY,
+            f64::NEG_INFINITY,
+        ];
+        for point in points.split_whitespace() {
+            let (x, y) = point.split_once(',').expect("two numbers");
+            for (k, text) in [x, y].into_iter().enumerate() {
+                let value: f64 = text.parse().expect("a number");
+                found[2 * k] = found[2 * k].min(value);
+                found[2 * k + 1] = found[2 * k + 1].max(value);
+            }
+        }
+        found
+    };
+    let all: Vec<[f64; 4]> = text.split("<polygon").skip(1).map(outline).collect();
+    // The legend, then for each of two modes three bodies at rest and displaced.
+    let bodies = &all[3..];
+    assert_eq!(bodies.len(), 12);
+    for mode in bodies.chunks_exact(6) {
+        let (rest, moved) = mode.split_at(3);
+        let size = [0, 2].map(|k| {
+            let low = rest.iter().map(|own| own[k]).fold(f64::INFINITY, f64::min);
+            rest.iter()
+                .map(|own| own[k + 1])
+                .fold(f64::NEG_INFINITY, f64::max)
+                - low
+        });
+        let size = size[0].max(size[1]);
+        let pairs = rest.iter().flatten().zip(moved.iter().flatten());
+        let largest = pairs.map(|(a, b)| (a - b).abs()).fold(0.0, f64::max);
+        assert!(
+            (0.03..0.25).contains(&(largest / size)),
+            "{largest} of {size}"
+        );
+    }
 }

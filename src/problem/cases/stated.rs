@@ -6,7 +6,7 @@ use crate::composing::without_mark;
 use crate::expression::Expression;
 use crate::finding::Finding;
 use crate::pointer::{advice, is_below, join, keys};
-use crate::schema::cases::{ByCases, Case as WrittenCase, OverCases, WhichCases};
+use crate::schema::cases::{Case as WrittenCase, CaseCombination, OverCases, WhichCases};
 use crate::schema::functions::{Function, WhichFunction};
 use crate::schema::{Constraint, Document, Objective};
 use indexmap::IndexMap;
@@ -457,7 +457,7 @@ impl Stated {
                 let said = format!("\"{name}\" once more");
                 found.push(Finding::new(&place, said, "each case once"));
             }
-            let positive = !matches!(own.by, ByCases::Sum);
+            let positive = !matches!(own.by, CaseCombination::Sum);
             if !weight.is_finite() || (positive && *weight <= 0.0) {
                 let expected = if positive {
                     "a weight above zero"
@@ -471,11 +471,11 @@ impl Stated {
             found.push(Finding::new(&at, "no case", "one case or more"));
         }
         match (&own.by, &own.cases) {
-            (ByCases::Ks(_), Some(WhichCases::Weighted(_))) => {
+            (CaseCombination::Ks(_), Some(WhichCases::Weighted(_))) => {
                 let expected = "a list of cases: the largest of values has no weights";
                 found.push(Finding::new(&at, "weights", expected));
             }
-            (ByCases::Deviation, _) if weights.len() == 1 => {
+            (CaseCombination::Deviation, _) if weights.len() == 1 => {
                 let said = "the deviation of one case, which is zero";
                 found.push(Finding::new(join(pointer, "by"), said, "two cases or more"));
             }
