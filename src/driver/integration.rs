@@ -5,7 +5,6 @@ mod tangent;
 
 use super::event::{self, Admit};
 use super::flexible_limits;
-use super::known_evaluations::Events;
 use super::memory;
 use crate::functions::resolution::{Resolution, resolution};
 use crate::functions::{Function, Reduction, Scene};
@@ -64,6 +63,15 @@ pub struct Integration {
     pub settled: Option<f64>,
     /// By case of a problem with cases: its integration, if a function of it is asked.
     pub cases: Vec<Option<Integration>>,
+}
+
+/// When motions end at an event, if they do \[s\].
+#[derive(Clone, Debug, Default, PartialEq)]
+pub struct Events {
+    /// That of the scene.
+    pub own: Option<f64>,
+    /// Of a problem with cases: that of each.
+    pub cases: Vec<Option<f64>>,
 }
 
 /// Method and steps of an earlier choice.

@@ -1,6 +1,6 @@
 //! The evaluations of an earlier run, and the receiver of new ones.
 
-use super::integration::{KeptSteps, Refresh};
+use super::integration::{Events, KeptSteps, Refresh};
 use crate::integrate::{Grid, Method, WorkCounts};
 use crate::problem::Problem;
 use crate::report::evaluations::{EvaluationRecord, Found, Head, RowsLeftOut, StepsInUse, Work};
@@ -46,15 +46,6 @@ struct Known {
     events: Events,
     /// Its work, until it is counted.
     work: Work,
-}
-
-/// When motions end at an event, if they do \[s\].
-#[derive(Clone, Debug, Default, PartialEq)]
-pub struct Events {
-    /// That of the scene.
-    pub own: Option<f64>,
-    /// Of a problem with cases: that of each.
-    pub cases: Vec<Option<f64>>,
 }
 
 /// Additional data of an evaluation.

@@ -379,7 +379,10 @@ fn the_crane_pulls_as_statics_says() {
             moment / arm
         );
     }
-    gradients_are_exact(&parsed(&read("problems/crane.json")), &json!("crane"));
+    let mut file = read("problems/crane.json");
+    file["functions"]["stress"]["final"]["largest_fibre_stress"]["rho"] = json!(4e-6);
+    file["functions"]["worst stress"]["over_cases"]["by"]["ks"]["rho"] = json!(1e-6);
+    gradients_are_exact(&parsed(&file), &json!("crane"));
 }
 
 /// Orders of cases and functions, and the number of threads, do not change a bit.
