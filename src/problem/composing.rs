@@ -1,7 +1,6 @@
 //! Reads expressions of functions: names, order and units.
 
 use super::aggregates::rho_of;
-use super::cases::value_in_case;
 use super::composed::{Composed, Composition, Term};
 use super::derived::{Derived, place};
 use super::expression::{Call, Expression, MARK, Operator, Placed};
@@ -300,6 +299,11 @@ pub(super) fn strip(document: &mut Document) {
     document.functions.retain(|_, function| {
         !matches!(function, Function::Expression(_) | Function::OverCases(_))
     });
+}
+
+/// Name of the value of a function in a case, and of what belongs to it.
+pub(super) fn value_in_case(function: &str, case: &str) -> String {
+    format!("{function} in {case}")
 }
 
 /// A function over cases as an expression of its values in these.

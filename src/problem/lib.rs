@@ -59,6 +59,7 @@ mod source;
 mod start_rates;
 mod starting_angles;
 mod starts;
+mod stated_cases;
 mod statics;
 pub mod structure;
 mod surfaces;
@@ -243,7 +244,7 @@ impl Problem {
     /// # Errors
     /// All faults that are found, each with its place.
     pub fn load(path: &Path, overrides: &[Override]) -> Result<Self, Faults> {
-        read::load(path, overrides)
+        cases::load(path, overrides)
     }
 
     /// Reads a problem from its text; `file` is its name in faults.
@@ -251,7 +252,7 @@ impl Problem {
     /// # Errors
     /// All faults that are found, each with its place.
     pub fn parse(text: &str, file: &str, overrides: &[Override]) -> Result<Self, Faults> {
-        read::parse(text, file, overrides)
+        cases::parse(text, file, overrides)
     }
 
     /// Whether a body has finite elements.

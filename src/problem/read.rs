@@ -1,7 +1,6 @@
 //! Reads the text of a problem file: a problem, or all of its faults.
 
 use super::aggregates;
-use super::cases::{self, Stated};
 use super::check::check;
 use super::composing::{Composing, strip};
 use super::derived::{Derived, Expressions};
@@ -24,6 +23,7 @@ use super::points;
 use super::prune::prune;
 use super::quantity_units::{mismatched, name_units, name_units_of_joints};
 use super::source::Source;
+use super::stated_cases::Stated;
 use super::statics::expand::expand;
 use super::statics::per_thickness;
 use super::statics::{Asked, Statics};
@@ -58,18 +58,22 @@ const TOLERANCE_OF_ELEMENTS: f64 = 1e-5;
 /// Name of the objective if the nearest feasible design is sought.
 pub(super) const NEAREST: &str = "squared distance from the start";
 
-/// Reads a problem file.
-pub(super) fn load(path: &Path, overrides: &[Override]) -> Result<Problem, Faults> {
+/// The text of a problem file, and its name in faults.
+pub(super) fn text_of(path: &Path) -> Result<(String, String), Faults> {
     let file = path.display().to_string();
     let text = file_text::read(path).map_err(|unread| match unread {
         Unread::Missing(found) => Faults::unreadable(&file, &found, "a problem file"),
         Unread::Faulty(faults) => faults,
     })?;
-    parse(&text, &file, overrides)
+    Ok((text, file))
 }
 
-/// Reads a problem from its text.
-pub(super) fn parse(written: &str, file: &str, overrides: &[Override]) -> Result<Problem, Faults> {
+/// The document of a text with its changes, the places of its entries, and what is wrong so far.
+pub(super) fn document(
+    written: &str,
+    file: &str,
+    overrides: &[Override],
+) -> Result<(Value, Source, Vec<Finding>), Faults> {
     // A text may begin with a byte order mark, JSON may not.
     let written = written.strip_prefix('\u{feff}').unwrap_or(written);
     let mut document = file_text::json(written, file)?;
@@ -79,14 +83,7 @@ pub(super) fn parse(written: &str, file: &str, overrides: &[Override]) -> Result
     for change in overrides {
         findings.extend(change.apply(&mut document).err());
     }
-    let of_cases = document.get("cases").is_some().then(|| source.clone());
-    let (problem, stated) = single(document, source, findings, (file, overrides))?;
-    match (stated, of_cases) {
-        (Some(stated), Some(source)) => {
-            cases::complete(problem, stated, &source, (file, overrides))
-        }
-        _ => Ok(problem),
-    }
+    Ok((document, source, findings))
 }
 
 /// The problem of a document without its cases, and what it states of these, if it has some. `findings` are known already.

@@ -1,6 +1,6 @@
 //! Design variables: their numbers in the file, their start and their bounds.
 //!
-//! `read::parse` calls `bind`. Then `Quantity::get(x)` returns x_i (quantity.rs), and
+//! `read::single` calls `bind`. Then `Quantity::get(x)` returns x_i (quantity.rs), and
 //! driver/evaluate.rs (`derivatives`, `parameter_derivatives`) sums ∂f/∂p · ∂p/∂x_i.
 
 use super::finding::Finding;

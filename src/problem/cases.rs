@@ -5,29 +5,22 @@
 //! expressions give: functions over cases are expressions of them. So values and derivatives follow from those of the cases
 //! by [`Composition`](super::Composition).
 
-mod stated;
-
-pub(super) use stated::Stated;
-
-use super::composing::Composing;
+use super::composing::{Composing, value_in_case};
 use super::fault::Faults;
 use super::finding::Finding;
 use super::overrides::Override;
 use super::pointer::join;
 use super::read::{self, NEAREST};
 use super::source::Source;
+use super::stated_cases::Stated;
 use super::{Constraint, Objective, Problem, Sense};
 use crate::schema::cases::Case as WrittenCase;
 use crate::schema::functions::Function;
 use crate::schema::{self, Analysis};
 use serde_json::{Value, json};
 use std::collections::HashMap;
+use std::path::Path;
 use std::sync::Arc;
-
-/// Name of the value of a function in a case, and of what belongs to it.
-pub(super) fn value_in_case(function: &str, case: &str) -> String {
-    format!("{function} in {case}")
-}
 
 /// A case.
 #[derive(Clone, Debug)]
@@ -94,11 +87,28 @@ impl Problem {
     }
 }
 
+/// Reads a problem file.
+pub(super) fn load(path: &Path, overrides: &[Override]) -> Result<Problem, Faults> {
+    let (text, file) = read::text_of(path)?;
+    parse(&text, &file, overrides)
+}
+
+/// Reads a problem from its text.
+pub(super) fn parse(written: &str, file: &str, overrides: &[Override]) -> Result<Problem, Faults> {
+    let (document, source, findings) = read::document(written, file, overrides)?;
+    let of_cases = document.get("cases").is_some().then(|| source.clone());
+    let (problem, stated) = read::single(document, source, findings, (file, overrides))?;
+    match (stated, of_cases) {
+        (Some(stated), Some(source)) => complete(problem, stated, &source, (file, overrides)),
+        _ => Ok(problem),
+    }
+}
+
 /// The problem of all cases; `base` is that of the file without them, `source` the text and the places of its entries.
 ///
 /// # Errors
 /// The faults of a case, or of functions over cases.
-pub(super) fn complete(
+fn complete(
     mut base: Problem,
     stated: Stated,
     source: &Source,
@@ -135,7 +145,11 @@ pub(super) fn complete(
             places.push((c, f));
         }
     }
-    stated.state(&mut written, &list);
+    let names: Vec<(&str, &[String])> = list
+        .iter()
+        .map(|case| (case.name.as_str(), &case.problem.function_names[..]))
+        .collect();
+    stated.state(&mut written, &names);
     let parameters = base.document["parameters"].as_object().cloned();
     let located = |findings| Faults::locate(findings, file, source, overrides);
     let composing = Composing::read(&written, (parameters.as_ref(), source), &Default::default());

@@ -1,8 +1,6 @@
 //! What a document states of its cases: which functions are those of the machine, and where they are wanted.
 
-use super::Case;
-use super::value_in_case;
-use crate::composing::without_mark;
+use crate::composing::{value_in_case, without_mark};
 use crate::expression::Expression;
 use crate::finding::Finding;
 use crate::pointer::{advice, is_below, join, keys};
@@ -37,7 +35,7 @@ const WITHOUT_MASS: [&str; 7] = [
 ];
 
 /// What a document states of its cases.
-pub(crate) struct Stated {
+pub(super) struct Stated {
     cases: IndexMap<String, WrittenCase>,
     /// Functions of the machine: those that they name, and the cases in which they are wanted.
     machine: IndexMap<String, Wanted>,
@@ -273,7 +271,8 @@ impl Stated {
     }
 
     /// Adds functions over cases, the objective and the constraints to a document of the functions in each case.
-    pub fn state(&self, document: &mut Document, list: &[Case]) {
+    /// `list` has the functions of each case.
+    pub fn state(&self, document: &mut Document, list: &[(&str, &[String])]) {
         document.cases.clone_from(&self.cases);
         if let Some(first) = self.cases.keys().next() {
             let one = |name: &String| {
@@ -295,22 +294,20 @@ impl Stated {
                 document.constraints.insert(name.clone(), own.clone());
                 continue;
             };
-            for case in list {
+            for (case, functions) in list {
                 let is_meant = |function: &&String| {
                     let member = function.strip_prefix(of.as_str());
                     let is_member = member.is_some_and(|rest| rest.starts_with('['));
                     *function == of || (is_member && self.families.contains(of))
                 };
-                for function in case.problem.function_names.iter().filter(is_meant) {
+                for function in functions.iter().filter(is_meant) {
                     let name = format!("{name}{}", &function[of.len()..]);
-                    let function = WhichFunction::Named(value_in_case(function, &case.name));
+                    let function = WhichFunction::Named(value_in_case(function, case));
                     let own = Constraint {
                         function,
                         ..own.clone()
                     };
-                    document
-                        .constraints
-                        .insert(value_in_case(&name, &case.name), own);
+                    document.constraints.insert(value_in_case(&name, case), own);
                 }
             }
         }
