@@ -138,7 +138,7 @@ __all__ = [
     "StressPer",
     "WhichCases",
     "AllCases",
-    "ByCases",
+    "CaseCombination",
     "Extreme",
     "WhichFunction",
     "ExpressionOfFunctions",
@@ -206,7 +206,7 @@ __all__ = [
     "data_file",
     "measured_number",
     "barrier",
-    "by_caseses",
+    "case_combinations",
     "expression_of_functions",
     "joint_defaults",
     "MachineKeys",
@@ -616,8 +616,8 @@ class Barrier(Part):
     __slots__ = ()
 
 
-class ByCases(Part):
-    """What is taken of the values f_c of a function in several cases, with weights w_c. Made by `by_caseses`."""
+class CaseCombination(Part):
+    """What is taken of the values f_c of a function in several cases, with weights w_c. Made by `case_combinations`."""
 
     __slots__ = ()
 
@@ -4419,7 +4419,7 @@ class functions(Kinds):
     def over_cases(
         *,
         function: str,
-        by: ByCases | Literal["sum", "mean", "deviation"],
+        by: CaseCombination | Literal["sum", "mean", "deviation"],
         cases: WhichCases | None = None,
     ) -> Function:
         """Sum, mean, deviation or extreme of the values of a function in several cases.
@@ -4428,7 +4428,7 @@ class functions(Kinds):
         ----------
         function : text
             Name of a function of the machine, which has a value in each case.
-        by : one of `by_caseses` or "sum" or "mean" or "deviation"
+        by : one of `case_combinations` or "sum" or "mean" or "deviation"
             What is taken of the values.
         cases : "all" or list of texts or number by name, optional
             "all" (default), a list of names, or the weight of each case by its name.
@@ -4476,7 +4476,7 @@ class functions(Kinds):
         return made_of(Function, "functions.expression", value)
 
 
-class by_caseses(Kinds):
+class case_combinations(Kinds):
     """What is taken of the values f_c of a function in several cases, with weights w_c."""
 
     sum: Final[Literal["sum"]] = "sum"
@@ -4490,7 +4490,7 @@ class by_caseses(Kinds):
 
     @staticmethod
     @checked
-    def ks(*, rho: Real | None = None, of: Extreme | None = None) -> ByCases:
+    def ks(*, rho: Real | None = None, of: Extreme | None = None) -> CaseCombination:
         """A smooth bound of the largest or the smallest, without weights.
 
         Parameters
@@ -4503,7 +4503,7 @@ class by_caseses(Kinds):
             "largest": The largest.
             "smallest": The smallest.
         """
-        return made(ByCases, "by_caseses.ks", locals())
+        return made(CaseCombination, "case_combinations.ks", locals())
 
 
 class MachineKeys(Document):
