@@ -2,6 +2,7 @@
 
 use super::aggregates::{add_smoothed, told};
 use super::arguments::Job;
+use super::error_table::add_errors;
 use super::{DONE, Failure, motion, print, shown, statics, tell, write_report};
 use crate::driver::analysed::InCases;
 use crate::driver::ends::Ends;
@@ -24,13 +25,18 @@ pub(super) fn simulate(
     let Simulated::Cases(all) = &found else {
         return Err(Failure::numerical("a problem without cases"));
     };
+    // Its modes are found once.
+    let text = match job.report || !(json || job.quiet) {
+        true => summary(problem, all)?,
+        false => String::new(),
+    };
     if json {
         let value = as_json(job, problem, all)?;
         let text = serde_json::to_string_pretty(&value).map_err(Failure::numerical)?;
         print(&(text + "\n"))?;
     } else {
         if !job.quiet {
-            print(&summary(problem, all)?)?;
+            print(&text)?;
         }
         if job.error {
             print(&motion::errors(problem, &found)?)?;
@@ -49,13 +55,7 @@ pub(super) fn simulate(
             }
         }
         if job.report {
-            write_report(
-                directory,
-                problem,
-                summary(problem, all)?,
-                &Ends::of(&found),
-                None,
-            )?;
+            write_report(directory, problem, text, &Ends::of(&found), None)?;
         }
         if !job.quiet {
             tell(&format!("results in {}\n", shown(directory)));
@@ -144,13 +144,7 @@ fn as_json(job: &Job, problem: &Problem, all: &InCases<Simulated>) -> Result<Val
             add_smoothed(&mut own, &smoothed, all.maximum(f).is_some());
         }
         if let Some(errors) = &errors {
-            own["error"] = json!(errors[f].value.error);
-            let gradient = problem.variables.iter().zip(&errors[f].gradient);
-            let gradient = gradient.map(|(variable, derivative)| {
-                let both = json!({"value": derivative.value, "error": derivative.error});
-                (variable.name.clone(), both)
-            });
-            own["gradient"] = Value::Object(gradient.collect());
+            add_errors(&mut own, problem, &errors[f]);
         }
         functions.insert(name.clone(), own);
     }

@@ -1,8 +1,9 @@
-//! The table of estimated errors of functions and gradients.
+//! Estimated errors of functions and gradients, as a table and in JSON.
 
 use crate::driver::{bases, error};
 use crate::problem::Problem;
 use crate::report::summary::is_rounding;
+use serde_json::{Value, json};
 use std::fmt::Write;
 
 /// The table of estimated errors.
@@ -35,6 +36,17 @@ pub(crate) fn table(problem: &Problem, found: &[error::FunctionError]) -> String
         }
     }
     text
+}
+
+/// Adds the estimated errors of a function and of its gradient to its entry.
+pub(super) fn add_errors(own: &mut Value, problem: &Problem, found: &error::FunctionError) {
+    own["error"] = json!(found.value.error);
+    let gradient = problem.variables.iter().zip(&found.gradient);
+    let gradient = gradient.map(|(variable, derivative)| {
+        let both = json!({"value": derivative.value, "error": derivative.error});
+        (variable.name.clone(), both)
+    });
+    own["gradient"] = Value::Object(gradient.collect());
 }
 
 /// Width of a column of names.

@@ -2,7 +2,7 @@
 
 use super::aggregates::{add_smoothed, told};
 use super::arguments::Job;
-use super::error_table::{self, table};
+use super::error_table::{self, add_errors, table};
 use super::{Failure, draw, modes};
 use crate::driver::modes::ToldModes;
 use crate::driver::unfollowed::unfollowed;
@@ -67,16 +67,10 @@ pub(super) fn as_json(
         let found = error::estimate(problem, &simulation.at, &all, true);
         for found in found.map_err(Failure::numerical)? {
             let own = &mut functions[&names[found.function]];
-            own["error"] = json!(found.value.error);
+            add_errors(own, problem, &found);
             if unknown.is_some() {
                 own["error_known"] = json!(false);
             }
-            let gradient = problem.variables.iter().zip(&found.gradient);
-            let gradient = gradient.map(|(variable, derivative)| {
-                let both = json!({"value": derivative.value, "error": derivative.error});
-                (variable.name.clone(), both)
-            });
-            own["gradient"] = Value::Object(gradient.collect());
         }
         let found = driver::bases::errors(problem, &simulation.at, &all);
         bases = found.as_ref().err().map(of_finer);

@@ -2,7 +2,7 @@
 
 use super::aggregates::{add_smoothed, told};
 use super::arguments::Job;
-use super::error_table::table;
+use super::error_table::{add_errors, table};
 use super::{DONE, Failure, draw, print, shown, tell, write_report};
 use crate::driver::analysed::place;
 use crate::driver::ends::Ends;
@@ -108,13 +108,7 @@ pub(super) fn as_json(
             add_smoothed(&mut own, &smoothed, found.peak.is_some());
         }
         if let Some(errors) = errors {
-            own["error"] = json!(errors[f].value.error);
-            let gradient = problem.variables.iter().zip(&errors[f].gradient);
-            let gradient = gradient.map(|(variable, derivative)| {
-                let both = json!({"value": derivative.value, "error": derivative.error});
-                (variable.name.clone(), both)
-            });
-            own["gradient"] = Value::Object(gradient.collect());
+            add_errors(&mut own, problem, &errors[f]);
         }
         functions.insert(name.clone(), own);
     }

@@ -118,7 +118,7 @@ fn certified_cases(
         let count = case.problem.function_names.len();
         let along = (direction, tolerance, &mut sizes[first..first + count]);
         let own = of_design(&case.problem, simulated, along, cost)?;
-        let told = |text: String| format!("in the case \"{}\": {text}", case.name);
+        let told = |text: String| case.tell(text);
         found.faults.extend(own.faults.into_iter().map(told));
         found.notes.extend(own.notes.into_iter().map(told));
         let names = problem.function_names[first..].iter().cloned();

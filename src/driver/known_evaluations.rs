@@ -306,7 +306,7 @@ impl<'a> KnownEvaluations<'a> {
     }
 }
 
-/// Steps of a choice, as they are recorded.
+/// Steps of a choice, as they are recorded: method and why, ends and cells, and why they were chosen.
 pub(super) fn steps_of(refresh: Refresh) -> StepsInUse {
     let Refresh {
         method,
@@ -315,18 +315,7 @@ pub(super) fn steps_of(refresh: Refresh) -> StepsInUse {
         reason,
         cases,
     } = refresh;
-    StepsInUse {
-        cases: cases.into_iter().map(|own| own.map(steps_of)).collect(),
-        ..steps_in_use((method, method_reason), grid.as_ref(), reason)
-    }
-}
-
-/// Steps as they are recorded: method and why, ends and cells, and why they were chosen.
-pub(super) fn steps_in_use(
-    (method, method_reason): (String, Option<String>),
-    grid: Option<&Grid>,
-    reason: String,
-) -> StepsInUse {
+    let grid = grid.as_ref();
     StepsInUse {
         method,
         method_reason,
@@ -336,7 +325,7 @@ pub(super) fn steps_in_use(
         kinks: grid.map_or_else(Vec::new, |grid| grid.kinks().to_vec()),
         equal: grid.is_some_and(Grid::is_equal),
         ends: grid.map_or_else(Vec::new, |grid| grid.ends().to_vec()),
-        cases: Vec::new(),
+        cases: cases.into_iter().map(|own| own.map(steps_of)).collect(),
     }
 }
 

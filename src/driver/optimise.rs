@@ -235,7 +235,7 @@ fn doubtful(
                 let start = starts.get(c).and_then(Option::as_ref);
                 let told = doubtful(&case.problem, (start, end), &wanted[c]);
                 told.into_iter()
-                    .map(|why| format!("in the case \"{}\": {why}", case.name))
+                    .map(|why| case.tell(why))
                     .collect::<Vec<_>>()
             };
             ends.each().enumerate().flat_map(of_case).collect()

@@ -60,8 +60,7 @@ pub fn unresolved(problem: &Problem, x: &[f64]) -> Vec<String> {
     if let Some(cases) = &problem.cases {
         let of_case = |case: &Case| {
             let own = unresolved(&case.problem, x).into_iter();
-            own.map(|why| format!("in the case \"{}\": {why}", case.name))
-                .collect::<Vec<_>>()
+            own.map(|why| case.tell(why)).collect::<Vec<_>>()
         };
         return cases.list.iter().flat_map(of_case).collect();
     }

@@ -31,6 +31,13 @@ pub struct Case {
     pub problem: Problem,
 }
 
+impl Case {
+    /// What is said of it, with its name.
+    pub fn tell(&self, what: impl std::fmt::Display) -> String {
+        format!("in the case \"{}\": {what}", self.name)
+    }
+}
+
 /// The cases of a problem.
 #[derive(Clone, Debug)]
 pub struct Cases {

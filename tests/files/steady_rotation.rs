@@ -4,8 +4,8 @@
 use super::damped_modes::pairs;
 use super::machines_at_rest::{fault, rod};
 use crate::reference::documents::{problem as parsed, values};
-use crate::reference::gradients::gradients_are_exact;
-use flexbody_driver::{Simulated, check};
+use crate::reference::gradients::{gradients_are_exact, gradients_are_slopes};
+use flexbody_driver::check;
 use flexbody_mechanics::system::equilibrium::Whirl;
 use flexbody_problem::Problem;
 use nalgebra::DMatrix;
@@ -26,26 +26,7 @@ fn derivatives_are_right(file: &Value, context: &Value) {
 }
 
 fn derivatives_are_slopes(file: &Value, context: &Value) {
-    let problem = parsed(file);
-    let x = problem.start();
-    let at = |x: &[f64]| Simulated::of(&problem, x).expect("a rest");
-    for derivative in check(&problem, &x).expect("derivatives") {
-        let (f, i) = (derivative.function, derivative.variable);
-        let step = 1e-4 * x[i].abs();
-        let moved = |by: f64| {
-            let mut x = x.clone();
-            x[i] += by;
-            at(&x).value(f)
-        };
-        let difference = (8.0 * (moved(step) - moved(-step)) - moved(2.0 * step)
-            + moved(-2.0 * step))
-            / (12.0 * step);
-        let off = (derivative.adjoint - difference).abs() * x[i].abs();
-        assert!(
-            off < 1e-7 * at(&x).value(f).abs().max(1e-2),
-            "{context}: {derivative:?} {difference}"
-        );
-    }
+    gradients_are_slopes(&parsed(file), 1e-2, context);
 }
 
 /// Two carts on a table that turns: one slides along x, and on it another along y.

@@ -1,6 +1,6 @@
 //! Gradients of problems against the complex step.
 
-use flexbody_driver::check;
+use flexbody_driver::{Simulated, check};
 use flexbody_problem::Problem;
 use serde_json::Value;
 
@@ -31,6 +31,30 @@ fn gradients_agree(problem: &Problem, (x, sizes): (&[f64], &[f64]), context: &Va
             let off = ((d.adjoint - d.complex_step) * sizes[d.variable]).abs() / gradient;
             assert!(off <= 1e-12, "{context} {d:?}: {off:e}");
         }
+    }
+}
+
+/// Asserts that every derivative at the start agrees with a difference of five values to 1e-7 of the function, or of `floor` if
+/// that is larger, for a change of a variable by itself. `context` names the case.
+pub fn gradients_are_slopes(problem: &Problem, floor: f64, context: &Value) {
+    let x = problem.start();
+    let at = |x: &[f64]| Simulated::of(problem, x).expect("an analysis");
+    for derivative in check(problem, &x).expect("derivatives") {
+        let (f, i) = (derivative.function, derivative.variable);
+        let step = 1e-4 * x[i].abs();
+        let moved = |by: f64| {
+            let mut x = x.clone();
+            x[i] += by;
+            at(&x).value(f)
+        };
+        let difference = (8.0 * (moved(step) - moved(-step)) - moved(2.0 * step)
+            + moved(-2.0 * step))
+            / (12.0 * step);
+        let off = (derivative.adjoint - difference).abs() * x[i].abs();
+        assert!(
+            off < 1e-7 * at(&x).value(f).abs().max(floor),
+            "{context}: {derivative:?} {difference}"
+        );
     }
 }
 

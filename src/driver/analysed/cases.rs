@@ -57,9 +57,14 @@ impl<T> InCases<T> {
         all.filter_map(|(case, at)| Some((case, at.as_ref()?)))
     }
 
+    /// A number of a function that an expression does not give; NaN if its case is not analysed.
+    fn at_place(&self, k: usize, of: &impl Fn(&T, usize) -> f64) -> f64 {
+        self.place(k).map_or(f64::NAN, |(_, at, own)| of(at, own))
+    }
+
     /// The value of a function, from those of functions of the cases.
     fn value_by(&self, f: usize, of: impl Fn(&T, usize) -> f64) -> f64 {
-        let value = |k: usize| self.place(k).map_or(f64::NAN, |(_, at, own)| of(at, own));
+        let value = |k: usize| self.at_place(k, &of);
         self.composition.value(f, &self.x, &value)
     }
 
@@ -88,10 +93,7 @@ impl<T> InCases<T> {
             let place = wanted[case].binary_search(&own);
             place.map_or(&[][..], |place| &rows[case][place][..])
         };
-        let value = |k: usize| {
-            self.place(k)
-                .map_or(f64::NAN, |(_, at, own)| value(at, own))
-        };
+        let value = |k: usize| self.at_place(k, &value);
         let one = |&f: &usize| match self.composition.gives(f) {
             true => composed::derivatives(&self.composition.partials(f, &self.x, &value), &row),
             false => row(f).to_vec(),
@@ -104,10 +106,7 @@ impl<T> InCases<T> {
         if !self.composition.gives(f) {
             return vec![f];
         }
-        let value = |k: usize| {
-            self.place(k)
-                .map_or(f64::NAN, |(_, at, own)| value(at, own))
-        };
+        let value = |k: usize| self.at_place(k, &value);
         let partials = self.composition.partials(f, &self.x, &value);
         let moving = partials.by_function.iter().filter(|(_, by)| *by != 0.0);
         moving.map(|(k, _)| *k).collect()
@@ -202,7 +201,7 @@ impl InCases<Analysed> {
         self.moving(f, Analysed::value).into_iter().find_map(|k| {
             let (case, at, own) = self.place(k)?;
             let why = at.no_derivative(&case.problem, own)?;
-            Some(format!("in the case \"{}\": {why}", case.name))
+            Some(case.tell(why))
         })
     }
 
@@ -214,7 +213,7 @@ impl InCases<Analysed> {
             let value = at.value(own);
             (!value.is_finite()).then(|| {
                 let why = at.not_finite_value(&case.problem, own, value);
-                format!("in the case \"{}\": {why}", case.name)
+                case.tell(why)
             })
         });
         lost.unwrap_or_else(|| composed::not_finite(problem, f, value, &|k| self.value(k)))
@@ -229,7 +228,7 @@ impl InCases<Analysed> {
             let at = at.as_ref()?;
             let (gradients, _) = at.gradients(&case.problem, wanted).ok()?;
             let why = at.refused(&case.problem, wanted, &gradients)?;
-            Some(format!("in the case \"{}\": {why}", case.name))
+            Some(case.tell(why))
         })
     }
 }
@@ -275,15 +274,7 @@ impl InCases<Simulated> {
             let (_, at, own) = self.place(f)?;
             return at.smoothed(own);
         }
-        let truth = |at: &Simulated, own: usize| {
-            let known = at.smoothed(own).map(|own| own.value);
-            known.unwrap_or_else(|| at.value(own))
-        };
-        let of = |k: usize| {
-            self.place(k)
-                .map_or(f64::NAN, |(_, at, own)| truth(at, own))
-        };
-        if let Some(value) = self.composition.sharp(f, &self.x, &of) {
+        if let Some(value) = self.sharp(f) {
             let far = self.far(f, value);
             return value.is_finite().then_some(Smoothed { value, far });
         }
@@ -292,6 +283,16 @@ impl InCases<Simulated> {
             None => (None, f64::NAN),
         };
         composed::smoothed(&self.composition, f, &self.x, &one)
+    }
+
+    /// What a function stands for that is smoothed over cases, from the true values of those of the cases.
+    fn sharp(&self, f: usize) -> Option<f64> {
+        let truth = |at: &Simulated, own: usize| {
+            let known = at.smoothed(own).map(|own| own.value);
+            known.unwrap_or_else(|| at.value(own))
+        };
+        let of = |k: usize| self.at_place(k, &truth);
+        self.composition.sharp(f, &self.x, &of)
     }
 
     /// How far a smooth bound over cases is from what it stands for, if it is far.
@@ -307,15 +308,7 @@ impl InCases<Simulated> {
 
     /// ρ for which a smooth bound of `n` values is within 1 % of the largest, and that bound: their logarithm of n over ρ.
     pub fn near_rho(&self, f: usize) -> Option<(f64, f64)> {
-        let truth = |at: &Simulated, own: usize| {
-            let known = at.smoothed(own).map(|own| own.value);
-            known.unwrap_or_else(|| at.value(own))
-        };
-        let of = |k: usize| {
-            self.place(k)
-                .map_or(f64::NAN, |(_, at, own)| truth(at, own))
-        };
-        let value = self.composition.sharp(f, &self.x, &of)?;
+        let value = self.sharp(f)?;
         let count = self.composition.of_scene(&[f]).len() as f64;
         let rho = count.ln().max(1.0) / (NEAR * value.abs());
         (rho.is_finite() && rho > 0.0).then_some((two_digits(rho), value))
@@ -364,7 +357,7 @@ impl InCases<Simulated> {
         let notes = all.flat_map(|((case, at), wanted)| {
             let own = at.as_ref().map(|at| at.warnings(&case.problem, wanted));
             let own = own.unwrap_or_default().into_iter();
-            own.map(|note| format!("in the case \"{}\": {note}", case.name))
+            own.map(|note| case.tell(note))
         });
         notes.collect()
     }

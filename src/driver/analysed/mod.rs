@@ -517,7 +517,7 @@ pub(crate) fn notes_of_start(problem: &Problem, x: &[f64]) -> Vec<String> {
     if let Some(cases) = &problem.cases {
         let notes = cases.list.iter().flat_map(|case| {
             let own = notes_of_start(&case.problem, x).into_iter();
-            own.map(|note| format!("in the case \"{}\": {note}", case.name))
+            own.map(|note| case.tell(note))
         });
         return notes.collect();
     }

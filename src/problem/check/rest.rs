@@ -111,16 +111,16 @@ impl Checker<'_> {
             Over::Whole(_) => false,
             Over::Within(own) => own.during.is_some(),
         };
-        let of_time = match function {
-            OfMotion::Ks(own) => own.during.is_some(),
-            OfMotion::InducedExponential(own) => own.during.is_some(),
-            OfMotion::Final(over) => windowed(over),
-            OfMotion::Clearance(_)
-            | OfMotion::Mass
+        let (of_time, of_state) = match function {
+            OfMotion::Ks(own) => (own.during.is_some(), true),
+            OfMotion::InducedExponential(own) => (own.during.is_some(), true),
+            OfMotion::Final(over) => (windowed(over), true),
+            OfMotion::Clearance(_) => (false, true),
+            OfMotion::Mass
             | OfMotion::Frequency(_)
             | OfMotion::LowestFrequency(_)
             | OfMotion::DampingRatio(_)
-            | OfMotion::CriticalSpeed(_) => false,
+            | OfMotion::CriticalSpeed(_) => (false, false),
             OfMotion::Integral(_)
             | OfMotion::Mean(_)
             | OfMotion::MeanSquare(_)
@@ -128,28 +128,9 @@ impl Checker<'_> {
             | OfMotion::FatigueDamage(_)
             | OfMotion::Value(_)
             | OfMotion::Misfit(_)
-            | OfMotion::Duration => true,
+            | OfMotion::Duration => (true, false),
         };
-        let of_rest = match function {
-            OfMotion::Ks(_)
-            | OfMotion::InducedExponential(_)
-            | OfMotion::Final(_)
-            | OfMotion::Clearance(_) => true,
-            OfMotion::Integral(_)
-            | OfMotion::Mean(_)
-            | OfMotion::MeanSquare(_)
-            | OfMotion::MeanAbsolute(_)
-            | OfMotion::FatigueDamage(_)
-            | OfMotion::Value(_)
-            | OfMotion::Misfit(_)
-            | OfMotion::Duration
-            | OfMotion::Mass
-            | OfMotion::Frequency(_)
-            | OfMotion::LowestFrequency(_)
-            | OfMotion::DampingRatio(_)
-            | OfMotion::CriticalSpeed(_) => false,
-        };
-        if of_rest && self.document.turning.is_some() {
+        if of_state && self.document.turning.is_some() {
             let found = "a function of a state, of a machine that turns";
             let expected =
                 "frequencies, damping ratios, critical speeds, \"mass\" or expressions of them";
