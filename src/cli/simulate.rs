@@ -7,9 +7,10 @@ use super::{
     DONE, Failure, NOT_REACHED, load, no_page, print, read, refine, shown, tell, write_report,
 };
 use crate::driver::ends::Ends;
-use crate::driver::{self, CheckedDerivative, not_finite};
+use crate::driver::{self, CheckedDerivative, Simulation, not_finite};
 use crate::figures::tables::ReactionAxes;
 use crate::library;
+use crate::problem::Problem;
 use crate::report::prepare_directory;
 use std::fmt::Write;
 use std::path::Path;
@@ -74,19 +75,24 @@ pub(crate) fn simulate(
             tell(&format!("results in {}\n", shown(directory)));
         }
     }
-    let functions = problem.function_names.iter().enumerate();
-    let lost = functions
-        .filter(|(f, _)| !simulation.at.function(*f).value.is_finite())
-        .map(|(f, _)| {
-            let value = simulation.at.function(f).value;
-            not_finite::value(&problem, &simulation.at, f, value)
-        })
-        .collect::<Vec<_>>();
-    if !lost.is_empty() {
-        let what = format!("{}: not finite: {}", problem.name, lost.join("; "));
-        return Err(Failure::numerical(what));
-    }
+    all_finite(&problem, &simulation)?;
     Ok(DONE)
+}
+
+/// Fails by the names of functions whose values are not finite.
+fn all_finite(problem: &Problem, simulation: &Simulation) -> Result<(), Failure> {
+    let value = |f: usize| simulation.at.function(f).value;
+    let lost: Vec<String> = (0..problem.function_names.len())
+        .filter(|&f| !value(f).is_finite())
+        .map(|f| not_finite::value(problem, &simulation.at, f, value(f)))
+        .collect();
+    match lost.is_empty() {
+        true => Ok(()),
+        false => {
+            let what = format!("{}: not finite: {}", problem.name, lost.join("; "));
+            Err(Failure::numerical(what))
+        }
+    }
 }
 
 /// Refuses files that nothing says where to write.
@@ -140,6 +146,11 @@ pub(crate) fn check(job: &Job, from: Option<&Path>, tolerance: f64) -> Result<u8
         (Err(_), Some(chaos)) => return Err(Failure::numerical(chaos)),
         (Err(failure), None) => return Err(Failure::numerical(failure)),
     };
+    let undefined = derivatives.iter().any(|own| own.adjoint.is_nan());
+    if undefined && problem.has_scene() {
+        let found = driver::simulate(&problem, &problem.start());
+        all_finite(&problem, &found.map_err(Failure::numerical)?)?;
+    }
     // Where the finer run fails, the two derivatives still agree or not.
     let unresolved = library::unresolved(&problem, &problem.start());
     let names = |all: &mut dyn Iterator<Item = &String>| {

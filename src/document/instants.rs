@@ -78,6 +78,10 @@ pub enum Instant {
     SpringForce(OfSpring),
     /// Torque by which a torsion spring turns its joint back [N m], damping included.
     SpringTorque(OfSpring),
+    /// A natural frequency of the machine about its state at the instant, drives held \[Hz\].
+    Frequency(OfMode),
+    /// The damping ratio of such a vibration.
+    DampingRatio(OfMode),
     /// Range of a projectile that is released at this instant \[m\].
     Range(Range),
     /// Von Mises stress by yield stress of a body of shells, aggregated over both faces of their Gauss points.
@@ -94,6 +98,20 @@ pub enum Instant {
     LargestSectionForce(LargestSectionForce),
     /// Largest stress of bending and stretch of several sections and fibres of a beam, by a smooth maximum \[Pa\].
     LargestFibreStress(LargestFibreStress),
+}
+
+/// A vibration about the state at an instant.
+#[derive(Clone, Debug, Deserialize, JsonSchema)]
+#[serde(deny_unknown_fields)]
+pub struct OfMode {
+    /// Number of the damped mode from 1, by its rate |s|. Motions that do not oscillate, being free or damped beyond ζ = 1,
+    /// are not counted.
+    #[schemars(extend(
+        "minimum" = 1,
+        "maximum" = 150,
+        "design_variable" = "the number of a mode is a count, not a physical number"
+    ))]
+    pub mode: usize,
 }
 
 /// Stress of a body of shells.

@@ -72,6 +72,10 @@ pub struct DampingRatio {
         "design_variable" = "the number of a mode is a count, not a physical number"
     ))]
     pub mode: usize,
+    /// Whether the mode is followed by its shape while the design changes: "mode" is its number at the start of the file.
+    /// Default: modes are counted by |s| at each design.
+    #[serde(default)]
+    pub follow: bool,
 }
 
 /// A critical speed of a machine that turns.

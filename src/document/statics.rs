@@ -242,6 +242,10 @@ pub struct Frequency {
     /// Default: the natural frequency without damping. In steady rotation all frequencies are damped ones.
     #[serde(default)]
     pub damped: bool,
+    /// Whether the mode is followed by its shape while the design changes: "mode" is its number at the start of the file.
+    /// Default: modes are counted by frequency at each design.
+    #[serde(default)]
+    pub follow: bool,
 }
 
 /// A smooth lower bound of all natural frequencies, also where they meet.

@@ -8,7 +8,7 @@ use super::integration::Integration;
 use crate::functions::seen::SeenPart;
 use crate::functions::series::Series;
 use crate::functions::snapshot::Snapshot;
-use crate::functions::{Function, Instant, Operation, Quantity, Reduction};
+use crate::functions::{Function, Instant, Operation, Quantity, Reduction, VibrationPart};
 use crate::integrate::{IntegrationFailure, Settings, Trajectory};
 use crate::math::Complex64;
 use crate::math::scalar::COMPLEX_STEP;
@@ -218,6 +218,10 @@ fn size_of_instant(at: &Evaluated, instant: &Instant<f64>) -> f64 {
             mass * length / time
         }
         Instant::ShellStress { .. } => 1.0,
+        Instant::Vibration(of) => match of.part {
+            VibrationPart::Frequency => 1.0 / time,
+            VibrationPart::DampingRatio => 1.0,
+        },
         Instant::AngularMomentum(_) => {
             let mass: f64 = model.bodies.iter().map(|body| body.mass).sum();
             mass * length * length / time

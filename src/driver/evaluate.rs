@@ -340,6 +340,7 @@ impl Evaluated {
         let mut adjoint = adjoint::gradients_of(&self.scene, &self.run, &targets)?;
         let mut of_event: Option<Vec<Scene<f64>>> = None;
         if ends_at_event && let Some(event) = adjoint.gradients.pop() {
+            adjoint.modes.pop();
             event::refuse_touch(&self.scene, &self.run, event.duration)?;
             let along = |gradient: &Scene<f64>| along_event(gradient, &event);
             let (all, sizes): (Vec<_>, Vec<_>) = adjoint.gradients.iter().map(along).unzip();
@@ -353,10 +354,15 @@ impl Evaluated {
         };
         let mut all = vec![Vec::with_capacity(self.x.len()); count];
         for i in 0..self.x.len() {
-            let moved = parameter_derivatives(problem, &self.x, i)?;
-            let rows = by_parameters.iter().zip(&sizes);
-            for (gradient, (by, sizes)) in all.iter_mut().zip(rows) {
+            let scene = moved_scene(problem, &self.x, i)?;
+            let moved: Vec<f64> = scene.parameters().into_iter().map(|p| p.du).collect();
+            let rows = by_parameters.iter().zip(&sizes).zip(&adjoint.modes);
+            for (gradient, ((by, sizes), modes)) in all.iter_mut().zip(rows) {
                 let mut sum = Derivative::default();
+                for by_mode in modes.iter().map(|mode| mode.along(&scene.model)) {
+                    sum.value += by_mode;
+                    sum.terms += by_mode.abs();
+                }
                 // A parameter without a derivative concerns the functions that depend on it alone.
                 let terms = by.iter().zip(sizes).zip(&moved);
                 for ((a, size), b) in terms.filter(|((a, size), _)| **a != 0.0 || **size != 0.0) {
@@ -390,15 +396,11 @@ fn along_event(function: &Scene<f64>, event: &Scene<f64>) -> (Scene<f64>, Scene<
     (with(&|f, e| f - e), with(&|f, e| f.abs() + e.abs()))
 }
 
-/// Derivative of every parameter of the scene in variable i.
+/// The scene with the derivatives of all its parameters in variable i.
 ///
 /// # Errors
 /// The start has no derivative, as of a machine at rest that nothing holds against a change.
-fn parameter_derivatives(
-    problem: &Problem,
-    x: &[f64],
-    i: usize,
-) -> Result<Vec<f64>, IntegrationFailure> {
+fn moved_scene(problem: &Problem, x: &[f64], i: usize) -> Result<Scene<Dual>, IntegrationFailure> {
     let x: Vec<Dual> = x
         .iter()
         .enumerate()
@@ -406,5 +408,5 @@ fn parameter_derivatives(
         .collect();
     let scene = problem.scene(&x);
     scene.admit_start()?;
-    Ok(scene.parameters().into_iter().map(|p| p.du).collect())
+    Ok(scene)
 }

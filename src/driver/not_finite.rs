@@ -3,7 +3,7 @@
 use super::composed;
 use super::evaluate::Evaluated;
 use crate::functions::series::Series;
-use crate::functions::{Function, Instant};
+use crate::functions::{Function, Instant, Reacting};
 use crate::problem::Problem;
 
 /// A function whose value is not finite, and the time from which on its data are not.
@@ -57,12 +57,15 @@ pub fn value(problem: &Problem, at: &Evaluated, f: usize, value: f64) -> String 
 /// Why a reaction may not be determined.
 fn shared(at: &Evaluated, instant: &Instant<f64>) -> String {
     let joints = &at.scene.model.joints;
-    match instant.reacting_joint() {
-        Some(joint) if joints.iter().any(|joint| !joint.redundant.is_empty()) => format!(
-            ", as joint \"{}\" shares it with others in a way that the motion does not determine; a \
+    match instant.reacting() {
+        Some(Reacting::All) => ", as it has no such vibration then".to_owned(),
+        Some(Reacting::Joint(joint)) if joints.iter().any(|joint| !joint.redundant.is_empty()) => {
+            format!(
+                ", as joint \"{}\" shares it with others in a way that the motion does not determine; a \
              joint with fewer constraints, such as a spherical or cylindrical one, would",
-            joints[joint].name
-        ),
+                joints[joint].name
+            )
+        }
         _ => String::new(),
     }
 }

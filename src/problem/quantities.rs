@@ -7,8 +7,8 @@ use crate::aggregates::rho_of;
 use crate::functions::seen::SeenPart;
 use crate::functions::series::Series;
 use crate::functions::{
-    Bound, EnergyPart, Function, Gate, GateSide, Instant, Operation, Projectile, Reduction,
-    Release, Rotation,
+    Bound, EnergyPart, Function, Gate, GateSide, Instant, OfVibration, Operation, Projectile,
+    Reduction, Release, Rotation, VibrationPart,
 };
 use crate::math::rotation::{self, compose, conjugate};
 use crate::math::scalar::{lift3, unit};
@@ -21,7 +21,7 @@ use crate::schema::measured::{Bound as Side, JointReaction, OfSpring, ReactionAx
 use crate::schema::mechanics::Point;
 use crate::schema::statics::Frequency;
 use crate::system::angular_momentum::AngularMomentum;
-use crate::system::equilibrium::{DampedVibration, Vibrations};
+use crate::system::equilibrium::{DampedVibration, Follow, Vibrations};
 use crate::system::loads::springs::{Spring, SpringPart};
 use crate::system::measures::{End, Wrench, WrenchPart};
 
@@ -39,6 +39,8 @@ pub(super) struct FunctionBuilder<'a, S> {
     pub frames: Vec<[Vec3<S>; 3]>,
     /// Vibrations about rest.
     pub vibrations: Vibrations<S>,
+    /// The modes among them that are followed by their shapes.
+    pub followed: Vec<Follow>,
     pub x: &'a [S],
 }
 
@@ -95,7 +97,10 @@ impl<S: Scalar> FunctionBuilder<'_, S> {
             },
             OfMotion::DampingRatio(own) => Function::OfDesign {
                 unit: "1",
-                value: self.of_damped(own.mode, DampedVibration::damping_ratio),
+                value: match own.follow {
+                    true => self.of_followed(own.mode, true, DampedVibration::damping_ratio),
+                    false => self.of_damped(own.mode, DampedVibration::damping_ratio),
+                },
             },
             OfMotion::CriticalSpeed(own) => Function::OfDesign {
                 unit: "rad/s",
@@ -115,12 +120,28 @@ impl<S: Scalar> FunctionBuilder<'_, S> {
 
     /// A frequency \[Hz\]: not a number without rest.
     fn frequency(&self, of: &Frequency) -> S {
+        if of.follow {
+            return self.of_followed(of.mode, of.damped, DampedVibration::frequency);
+        }
         if of.damped {
             return self.of_damped(of.mode, DampedVibration::frequency);
         }
         match self.vibrations.undamped.get(of.mode - 1) {
             None => S::from(f64::NAN),
             Some(own) => single(own.frequency, own.repeated),
+        }
+    }
+
+    /// A number of a vibration that is followed by its shape.
+    fn of_followed(&self, mode: usize, damped: bool, of: fn(&DampedVibration<S>) -> S) -> S {
+        let number = mode - 1;
+        let place = self
+            .followed
+            .iter()
+            .position(|own| *own == Follow { number, damped });
+        match place.and_then(|place| self.vibrations.followed.get(place)) {
+            None => S::from(f64::NAN),
+            Some(own) => single(of(own), own.repeated),
         }
     }
 
@@ -266,6 +287,14 @@ impl<S: Scalar> FunctionBuilder<'_, S> {
                 let direction = vector(&of.direction, self.x);
                 (self.flexible).displacement(self.body(&of.body), point, direction)
             }
+            I::Frequency(of) => Instant::Vibration(OfVibration {
+                mode: of.mode - 1,
+                part: VibrationPart::Frequency,
+            }),
+            I::DampingRatio(of) => Instant::Vibration(OfVibration {
+                mode: of.mode - 1,
+                part: VibrationPart::DampingRatio,
+            }),
             I::StrainEnergy(of) => Instant::StrainEnergy(self.flexible.index(self.body(&of.body))),
             I::VonMises(of) => {
                 let body = self.body(&of.body);

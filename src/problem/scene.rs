@@ -21,9 +21,12 @@ use crate::schema::mechanics::{Body, Shape};
 use crate::schema::modes::DampingRatio;
 use crate::schema::statics::Frequency;
 use crate::system::Numbering;
-use crate::system::equilibrium::{Request, Turning, Vibrations, WantedModes, settle};
+use crate::system::equilibrium::{Follow, Request, Turning, Vibrations, WantedModes, settle};
 use crate::system::failure::AssemblyFailure;
 use crate::system::placement::guess;
+
+/// Modes beyond the wanted ones among which followed ones are sought.
+const BEYOND: usize = 8;
 
 /// Default gravity \[m/s²\].
 pub const GRAVITY: [f64; 3] = [0.0, -9.81, 0.0];
@@ -68,6 +71,7 @@ pub fn with_places<S: Scalar>(
             .map(|joint| joint.frame_a.axes)
             .collect(),
         vibrations: Vibrations::default(),
+        followed: followed(document),
         x,
     };
     count_turns(document, &builder, &mut model);
@@ -76,6 +80,7 @@ pub fn with_places<S: Scalar>(
             sought,
             turning: turning(document, x),
             modes: wanted_modes(document),
+            followed: followed(document),
         };
         let mobilities: Vec<Mobility> = model.bodies.iter().map(|body| body.mobility).collect();
         if document.is_rest() {
@@ -131,7 +136,7 @@ fn wanted_modes(document: &Document) -> WantedModes {
                 wanted.count = wanted.count.max(own.mode);
             }
             Some(OfMotion::Frequency(Frequency { mode, .. }))
-            | Some(OfMotion::DampingRatio(DampingRatio { mode })) => {
+            | Some(OfMotion::DampingRatio(DampingRatio { mode, .. })) => {
                 wanted.damped = wanted.damped.max(*mode);
             }
             Some(OfMotion::CriticalSpeed(own)) => {
@@ -145,7 +150,31 @@ fn wanted_modes(document: &Document) -> WantedModes {
             _ => {}
         }
     }
+    if !followed(document).is_empty() {
+        wanted.beyond = BEYOND;
+    }
     wanted
+}
+
+/// The modes that functions follow by their shapes.
+fn followed(document: &Document) -> Vec<Follow> {
+    let mut all: Vec<Follow> = Vec::new();
+    for function in document.functions.values() {
+        let own = function.of_motion().and_then(|own| follow(&own));
+        all.extend(own.filter(|own| !all.contains(own)));
+    }
+    all
+}
+
+/// The mode that a function follows, if it does.
+fn follow(function: &OfMotion) -> Option<Follow> {
+    let (mode, damped, follows) = match function {
+        OfMotion::Frequency(own) => (own.mode, own.damped, own.follow),
+        OfMotion::DampingRatio(own) => (own.mode, true, own.follow),
+        _ => return None,
+    };
+    let number = mode - 1;
+    follows.then_some(Follow { number, damped })
 }
 
 /// The steady rotation of a machine.

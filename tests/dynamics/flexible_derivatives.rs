@@ -7,7 +7,7 @@ use flexbody_mathematics::linalg::SparseMatrix;
 use flexbody_mathematics::math::{Complex64, Parameters, Scalar, Vec3};
 use flexbody_mechanics::functions::instant::DeformationKind;
 use flexbody_mechanics::functions::snapshot::{Snapshot, SnapshotCotangent};
-use flexbody_mechanics::functions::{EnergyPart, Instant, Rows};
+use flexbody_mechanics::functions::{EnergyPart, Instant, RowCotangent, Rows};
 use flexbody_mechanics::integrate::implicit::ggl::{Equations, StepState};
 use flexbody_mechanics::model::{Form, Inertia, Model};
 use flexbody_mechanics::system::bodies::{
@@ -411,16 +411,17 @@ fn pull_backs_of_quantities() {
                 q: &case.q,
                 v: &case.v,
                 a: &still,
-                joint: Rows::none(),
+                reactions: Rows::none(),
                 time: 0.0,
             };
             let mut out = SnapshotCotangent {
                 y: &mut y,
                 v: &mut v,
                 a: &mut a,
-                lambda: &mut [],
+                reactions: &mut RowCotangent::default(),
                 time: &mut 0.0,
                 model: &mut cot,
+                modes: &mut Vec::new(),
             };
             instant.pull_back(&at, 0.0, 1.0, &mut out, &mut own);
             let zero = lift(&still);
@@ -434,7 +435,7 @@ fn pull_backs_of_quantities() {
                     q,
                     v,
                     a: &zero,
-                    joint: Rows::none(),
+                    reactions: Rows::none(),
                     time: Complex64::from(0.0),
                 };
                 slopes(&[instant.value(&at, 0.0)])[0]

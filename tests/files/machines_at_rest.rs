@@ -612,9 +612,12 @@ fn what_cannot_move_rests_as_its_motion_starts() {
             "strain": {"final": {"strain_energy": {"body": "inner"}}},
             "stress": {"ks": {"rho": 50, "of": {"von_mises": {"body": "inner", "rho": 50}}}}
         });
-        document["variables"] = json!({"thickness": {"paths": [
-            "/bodies/inner/elements/structure/thickness", "/bodies/outer/elements/structure/thickness"
-        ], "lower": 0.001, "upper": 0.1}});
+        document["variables"] = json!({
+            "thickness": {"paths": [
+                "/bodies/inner/elements/structure/thickness", "/bodies/outer/elements/structure/thickness"
+            ], "lower": 0.001, "upper": 0.1},
+            "young": {"path": "/materials/aluminium/young", "lower": 1e10, "upper": 1e11}
+        });
         let mut rest = document.clone();
         rest["analysis"] = json!("rest");
         document["start"] = json!("equilibrium");

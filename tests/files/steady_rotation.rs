@@ -30,7 +30,7 @@ fn derivatives_are_slopes(file: &Value, context: &Value) {
 }
 
 /// Two carts on a table that turns: one slides along x, and on it another along y.
-fn table(stiffness: [f64; 2], damping: [f64; 2], masses: [f64; 2], speed: f64) -> Value {
+pub fn table(stiffness: [f64; 2], damping: [f64; 2], masses: [f64; 2], speed: f64) -> Value {
     let cart = |mass: f64| json!({"shape": {"box": {"size": [0.2, 0.2, 0.2]}}, "mass": mass});
     let rail = |a: &str, b: &str, axis: [f64; 3]| json!({"prismatic": {"between": [a, b], "at": [0, 0, 0], "axis": axis}});
     let spring = |a: &str, b: &str, end: [f64; 3], k: usize| {

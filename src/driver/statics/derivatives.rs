@@ -27,10 +27,10 @@ impl StaticDesign {
                 let found = self.lowest[f].as_ref().expect("it was found before");
                 found.gradient.clone()
             }
-            Asked::Frequency(mode) => {
+            Asked::Frequency { .. } => {
                 let found = self.modes.as_ref().expect("modes were found before");
                 let modal = of_modes(&mut workspace, statics, structure)?;
-                frequency_gradient(modal, structure, found, *mode)?
+                frequency_gradient(modal, structure, found, self.mode_of(f))?
             }
         };
         Ok(Gradient {
@@ -112,7 +112,7 @@ impl StaticDesign {
                 }
                 Asked::OfSolutions(function) => of_solutions.push((f, function)),
                 Asked::Misfit { .. } => {}
-                Asked::Frequency(_) | Asked::LowestFrequency(_) => {
+                Asked::Frequency { .. } | Asked::LowestFrequency(_) => {
                     all.insert(f, pulled_back(&self.by_structure(f)?));
                 }
             }

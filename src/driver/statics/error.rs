@@ -188,7 +188,7 @@ fn gain(function: &Asked) -> f64 {
     match function {
         Asked::OfSolutions(Function::Stress { .. }) => 2.0,
         Asked::OfSolutions(_)
-        | Asked::Frequency(_)
+        | Asked::Frequency { .. }
         | Asked::LowestFrequency(_)
         | Asked::Misfit { .. }
         | Asked::DistanceFromStart => 4.0 / 3.0,

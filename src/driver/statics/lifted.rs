@@ -72,11 +72,11 @@ pub(super) fn along(
                     .map_err(|unknown| ModalFailure::from(StaticFailure::from(unknown)))?
                     .infinitesimal()
             }
-            Asked::Frequency(mode) => {
+            Asked::Frequency { .. } => {
                 let modes = at.modes.as_ref().expect("modes were found before");
                 let modal = of_modes(&mut own, statics, real)?;
                 let rates = eigenvalue_rates(modal, &scene.structure, modes);
-                frequency_rates(modes, &rates)[*mode]
+                frequency_rates(modes, &rates)[at.mode_of(f)]
             }
             Asked::LowestFrequency(rho) => {
                 let found = at.lowest[f].as_ref().expect("it was found before");

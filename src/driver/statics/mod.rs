@@ -6,6 +6,7 @@ pub mod error;
 mod inspect;
 mod lifted;
 mod limits;
+mod modes;
 pub mod precision;
 
 use crate::composed;
@@ -15,9 +16,7 @@ use crate::problem::{
     Asked, Composition, MeasuredFunction, Partials, Problem, StaticScene, Statics, Workspace,
 };
 use crate::structures::functions::{Function, Peak, Solved};
-use crate::structures::modes::{
-    LowestFrequency, ModalFailure, ModalProblem, Modes, lowest_frequency, lowest_of,
-};
+use crate::structures::modes::{LowestFrequency, ModalFailure, ModalProblem, Modes, lowest_of};
 use crate::structures::properties::PropertyFault;
 use crate::structures::quality::{MeshFault, faults};
 use crate::structures::statics::{StaticFailure, StaticProblem};
@@ -101,6 +100,8 @@ pub struct StaticDesign {
     /// Functions that expressions of others give.
     pub composition: Arc<Composition>,
     lowest: Vec<Option<LowestFrequency>>,
+    /// By function: its mode among them, if it is followed by its shape.
+    places: Vec<Option<usize>>,
     values: Vec<Option<StaticValue>>,
     workspace: Mutex<Workspace>,
     /// The work of the solutions.
@@ -155,7 +156,7 @@ fn cases_of(function: &Asked) -> &[usize] {
             | Function::Displacement { case, .. } => std::slice::from_ref(case),
             Function::Stress { cases, .. } => cases,
         },
-        Asked::Frequency(_)
+        Asked::Frequency { .. }
         | Asked::LowestFrequency(_)
         | Asked::Misfit { .. }
         | Asked::DistanceFromStart => &[],
@@ -224,6 +225,7 @@ impl StaticDesign {
             modes: None,
             composition: composition.clone(),
             lowest: vec![None; statics.functions.len()],
+            places: vec![None; statics.functions.len()],
             values: vec![None; statics.functions.len()],
             workspace: Mutex::new(statics.workspaces.take()),
             counts: WorkCounts::default(),
@@ -231,7 +233,7 @@ impl StaticDesign {
             scene,
         };
         design.solve(&needed)?;
-        design.find_modes(which)?;
+        design.find_modes(problem, which)?;
         for &f in which {
             design.values[f] = Some(design.value_of(problem, f)?);
         }
@@ -305,41 +307,6 @@ impl StaticDesign {
         Ok(())
     }
 
-    fn find_modes(&mut self, which: &[usize]) -> Result<(), StaticsFailure> {
-        let statics = self.statics.clone();
-        let highest = which.iter().filter_map(|&f| match statics.functions[f] {
-            Asked::Frequency(mode) => Some(mode),
-            _ => None,
-        });
-        let highest = highest.max();
-        let lowest = which.iter().filter_map(|&f| match statics.functions[f] {
-            Asked::LowestFrequency(rho) => Some((f, rho)),
-            _ => None,
-        });
-        for (f, rho) in lowest {
-            let structure = self.scene.structure.clone();
-            let modal = of_modes(self.workspace(), &statics, &structure)?;
-            let found = lowest_frequency(modal, &structure, rho)?;
-            self.counts.factorisations += found.modes.work.factorisations;
-            self.counts.solves += found.modes.work.solves;
-            self.lowest[f] = Some(found);
-        }
-        if let Some(highest) = highest {
-            let structure = self.scene.structure.clone();
-            let modal = of_modes(self.workspace(), &statics, &structure)?;
-            // A derivative needs the next mode too, if there is one.
-            let found = modal.solve_at_most(&structure, highest + 2)?;
-            let (asked, there) = (highest + 1, found.eigenvalues.len());
-            if there < asked {
-                return Err(ModalFailure::TooMany { asked, there }.into());
-            }
-            self.counts.factorisations += found.work.factorisations;
-            self.counts.solves += found.work.solves;
-            self.modes = Some(found);
-        }
-        Ok(())
-    }
-
     /// Calls `with` with the solutions, as structures know them.
     pub fn with_solved<T>(&self, with: impl FnOnce(&Solved<f64>) -> T) -> Option<T> {
         let workspace = self.shared();
@@ -364,9 +331,9 @@ impl StaticDesign {
                 let found = self.lowest[f].as_ref();
                 plain(found.expect("it was found before").value)
             }
-            Asked::Frequency(mode) => {
+            Asked::Frequency { .. } => {
                 let found = self.modes.as_ref().expect("modes were found before");
-                plain(found.frequencies()[*mode])
+                plain(found.frequencies()[self.mode_of(f)])
             }
             Asked::OfSolutions(function) => {
                 let found = self.with_solved(|solved| {
@@ -436,7 +403,7 @@ impl StaticDesign {
                 Some((soft_max::near((largest, largest), with)?, largest))
             }
             Asked::OfSolutions(_)
-            | Asked::Frequency(_)
+            | Asked::Frequency { .. }
             | Asked::Misfit { .. }
             | Asked::DistanceFromStart => None,
         }
@@ -463,7 +430,7 @@ impl StaticDesign {
                 Some(smoothed(found.value, (largest, largest), vec![*rho], with))
             }
             Asked::OfSolutions(_)
-            | Asked::Frequency(_)
+            | Asked::Frequency { .. }
             | Asked::Misfit { .. }
             | Asked::DistanceFromStart => None,
         }

@@ -8,6 +8,7 @@ mod workspace;
 
 use crate::functions::Scene;
 use crate::integrate::{IntegrationFailure, Tape, Trajectory, WorkCounts};
+use crate::system::equilibrium::FrozenMode;
 use crate::system::flexible;
 
 /// Gradients and the work of computing them.
@@ -16,6 +17,8 @@ pub struct AdjointRun {
     /// By requested function: its derivative in every parameter of the scene (a cotangent of the
     /// scene).
     pub gradients: Vec<Scene<f64>>,
+    /// By requested function: what its derivative in the parameters of the model has besides, through vibrations.
+    pub modes: Vec<Vec<FrozenMode>>,
     /// Work of the backward march.
     pub counts: WorkCounts,
 }

@@ -5,10 +5,11 @@ use super::Target;
 use super::compensated::Compensated;
 use crate::functions::linearised::Linearised;
 use crate::functions::snapshot::{Snapshot, SnapshotCotangent};
-use crate::functions::{JointMultipliers, Rows, Scene};
+use crate::functions::{Reactions, RowCotangent, Rows, Scene};
 use crate::integrate::Trajectory;
 use crate::integrate::{IntegrationFailure, WorkCounts};
 use crate::linalg::REFINED_SOLVES;
+use crate::system::equilibrium::FrozenMode;
 use crate::system::kkt::SaddlePoint;
 use crate::system::{bodies, initial};
 
@@ -17,8 +18,8 @@ struct Term<'a> {
     linearised: Linearised<'a>,
     /// Number of the function in the scene.
     function: usize,
-    /// For each quantity of an instant in it: the multipliers of the joint whose reaction it is.
-    joints: Vec<Option<JointMultipliers<'a, f64>>>,
+    /// For each quantity of an instant in it: the multipliers of the joints whose reactions it needs.
+    reactions: Vec<Option<Reactions<'a, f64>>>,
 }
 
 /// One target during the backward march.
@@ -26,6 +27,8 @@ pub(super) struct Sensitivity<'a> {
     terms: Vec<Term<'a>>,
     /// Derivatives in the parameters of the scene so far.
     pub cot: Scene<f64>,
+    /// Derivatives in the parameters of the model through vibrations, besides those in `cot`.
+    pub modes: Vec<FrozenMode>,
     /// Derivative in the duration through the step sizes and the instants.
     pub by_duration: f64,
     /// Cotangent of the present positions; seven coordinates per body.
@@ -47,12 +50,12 @@ impl<'a> Sensitivity<'a> {
                 Some(weights) => Linearised::history(function, weights, (model, run)),
                 None => Linearised::new(function, model, run),
             };
-            let joint = |which| {
-                let joint = linearised.reacting_joint(which)?;
-                Some(JointMultipliers::new(model, &run.numbering, joint))
+            let reactions = |which| {
+                let of = linearised.reacting(which)?;
+                Some(Reactions::new(model, &run.numbering, of))
             };
             Term {
-                joints: (0..linearised.quantities()).map(joint).collect(),
+                reactions: (0..linearised.quantities()).map(reactions).collect(),
                 linearised,
                 function: number,
             }
@@ -70,6 +73,7 @@ impl<'a> Sensitivity<'a> {
         Self {
             terms,
             cot: scene.zero_cotangent(),
+            modes: Vec::new(),
             by_duration,
             q: Compensated::zero(nq),
             v: Compensated::zero(nv),
@@ -97,35 +101,38 @@ impl<'a> Sensitivity<'a> {
             let (model, own) = self.cot.model_and_function(term.function);
             let linearised = &term.linearised;
             let plain = Snapshot::of(&scene.model, run, k);
-            for (which, joint) in term.joints.iter_mut().enumerate() {
+            for (which, reactions) in term.reactions.iter_mut().enumerate() {
                 if !linearised.depends_through(which, k) {
                     continue;
                 }
-                let mut lambda = vec![0.0; joint.as_ref().map_or(0, JointMultipliers::count)];
+                let mut by_rows = (reactions.as_ref())
+                    .map_or_else(RowCotangent::default, Reactions::zero_cotangent);
                 let mut out = SnapshotCotangent {
                     y: &mut *y,
                     v: &mut *v,
                     a: &mut *a,
-                    lambda: &mut lambda,
+                    reactions: &mut by_rows,
                     time: &mut by_time,
                     model: &mut *model,
+                    modes: &mut self.modes,
                 };
                 let at = Snapshot {
-                    joint: (joint.as_mut()).map_or(Rows::none(), |joint| joint.at(run, k)),
+                    reactions: (reactions.as_mut()).map_or(Rows::none(), |own| own.at(run, k)),
                     ..plain
                 };
                 linearised.pull_quantity(which, k, &at, &mut out, own);
-                if let Some(joint) = joint {
-                    by_time += joint.pull_back(&lambda, (&mut *y, &mut *v), model);
+                if let Some(reactions) = reactions {
+                    by_time += reactions.pull_back(&by_rows, (&mut *y, &mut *v), model);
                 }
             }
             let mut out = SnapshotCotangent {
                 y: &mut *y,
                 v: &mut *v,
                 a: &mut *a,
-                lambda: &mut [],
+                reactions: &mut RowCotangent::default(),
                 time: &mut by_time,
                 model: &mut *model,
+                modes: &mut self.modes,
             };
             linearised.pull_flight(k, &plain, &mut out, own);
         }
@@ -146,11 +153,11 @@ impl<'a> Sensitivity<'a> {
         a: &[f64],
         counts: &mut WorkCounts,
     ) -> Result<(), IntegrationFailure> {
-        let joints = self
+        let reactions = self
             .terms
             .iter()
-            .flat_map(|term| term.joints.iter().flatten());
-        counts.factorisations += joints.map(JointMultipliers::factorisations).sum::<usize>();
+            .flat_map(|term| term.reactions.iter().flatten());
+        counts.factorisations += reactions.map(Reactions::factorisations).sum::<usize>();
         let before = saddle.factorisations;
         let mut y = vec![0.0; a.len()];
         bodies::tangent_of_cotangent(&run.numbering, &run.initial.q, &self.q.value, &mut y);

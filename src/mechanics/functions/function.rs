@@ -343,6 +343,7 @@ impl<S: Scalar> Instant<S> {
             | Instant::LargestDeformation { .. }
             | Instant::Reaction(_)
             | Instant::Power(_)
+            | Instant::Vibration(_)
             | Instant::JointRate { .. }
             | Instant::Slide(_)
             | Instant::Spring(_) => {}

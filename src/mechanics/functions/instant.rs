@@ -1,8 +1,10 @@
 //! Quantities at an instant.
 
+use super::multipliers::Reacting;
 use super::seen::{Seen, SeenPart};
 use super::stations::Largest;
 use super::turning::Rotation;
+use super::vibration::{OfVibration, VibrationPart};
 use crate::math::{Scalar, Vec3, parameters};
 use crate::model::DegreeOfFreedom;
 use crate::model::flexible::Quadratic;
@@ -201,6 +203,8 @@ pub enum Instant<S> {
     Seen(Seen<S>),
     /// Power by which a load drives its bodies \[W\].
     Power(usize),
+    /// A number of a vibration of the whole machine about its state at the instant.
+    Vibration(OfVibration),
     /// Rate of body A of a joint against body B about or along its axis \[rad/s or m/s\].
     JointRate {
         /// The joint.
@@ -248,6 +252,7 @@ parameters!(enum Instant {
     Felt { body; point, direction },
     Seen(; seen),
     Power(load;),
+    Vibration(of;),
     JointRate { joint, dof; },
     Slide(joint;),
     Spring(spring;),
@@ -281,6 +286,10 @@ impl<S: Scalar> Instant<S> {
                 SeenPart::Velocity => "m/s",
             },
             Instant::Power(_) => "W",
+            Instant::Vibration(of) => match of.part {
+                VibrationPart::Frequency => "Hz",
+                VibrationPart::DampingRatio => "1",
+            },
             Instant::JointRate { dof, .. } => match dof {
                 DegreeOfFreedom::Rotation => "rad/s",
                 DegreeOfFreedom::Translation => "m/s",
@@ -341,6 +350,10 @@ impl<S: Scalar> Instant<S> {
                 SeenPart::Distance => "distance",
             },
             Instant::Power(_) => "power",
+            Instant::Vibration(of) => match of.part {
+                VibrationPart::Frequency => "frequency",
+                VibrationPart::DampingRatio => "damping ratio",
+            },
             Instant::JointRate { .. } => "joint rate",
             Instant::Slide(_) => "slide",
             Instant::Spring(spring) => match spring.part {
@@ -353,10 +366,11 @@ impl<S: Scalar> Instant<S> {
         }
     }
 
-    /// The joint whose multipliers the quantity needs, if any.
-    pub fn reacting_joint(&self) -> Option<usize> {
+    /// The joints whose multipliers the quantity needs, if any.
+    pub fn reacting(&self) -> Option<Reacting> {
         match self {
-            Instant::Reaction(wrench) => Some(wrench.joint),
+            Instant::Reaction(wrench) => Some(Reacting::Joint(wrench.joint)),
+            Instant::Vibration(_) => Some(Reacting::All),
             Instant::Position { .. }
             | Instant::Velocity { .. }
             | Instant::Acceleration { .. }

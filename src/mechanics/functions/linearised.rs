@@ -5,6 +5,7 @@ use super::function::{Function, Reduction, Release};
 use super::instant::{Instant, Projectile};
 use super::measure::pull_flight;
 use super::misfit;
+use super::multipliers::Reacting;
 use super::quantity::{Quantity, Sampled};
 use super::samples::turn;
 use super::series::Series;
@@ -302,9 +303,9 @@ impl<'a> Linearised<'a> {
         self.quantities.len()
     }
 
-    /// The joint whose multipliers a quantity needs, if any.
-    pub fn reacting_joint(&self, which: usize) -> Option<usize> {
-        self.quantities[which].instant.reacting_joint()
+    /// The joints whose multipliers a quantity needs, if any.
+    pub fn reacting(&self, which: usize) -> Option<Reacting> {
+        self.quantities[which].instant.reacting()
     }
 
     /// Whether the function depends on the states of instant k.

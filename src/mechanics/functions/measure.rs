@@ -123,7 +123,7 @@ impl<S: Scalar> Instant<S> {
                 momentum.value(&at.in_motion(&at.motions()), at.v)
             }
             Instant::Reaction(wrench) => {
-                let (motions, of) = (at.motions(), &at.joint);
+                let (motions, of) = (at.motions(), &at.reactions);
                 wrench.value(&at.in_motion(&motions), (of.lambda, of.undetermined))
             }
             Instant::Felt {
@@ -137,6 +137,7 @@ impl<S: Scalar> Instant<S> {
             }
             Instant::Seen(seen) => seen.value(at),
             Instant::Power(load) => work::power(&at.in_motion(&at.motions()), *load),
+            Instant::Vibration(of) => of.value(at),
             Instant::JointRate { joint, dof } => {
                 work::joint_rate(&at.in_motion(&at.motions()), (*joint, *dof))
             }
@@ -330,7 +331,7 @@ impl Instant<f64> {
                     v: None,
                     model: &mut *out.model,
                 };
-                let lambda = (at.joint.lambda, &mut *out.lambda);
+                let lambda = (at.reactions.lambda, &mut out.reactions.lambda[..]);
                 let here = at.in_motion(&motions);
                 *out.time += wrench.pull_back(&here, lambda, weight, &mut to, own);
             }
@@ -356,6 +357,7 @@ impl Instant<f64> {
                 add6(&mut out.y[at.numbering.velocity(*body)..], &ZERO, &turn);
             }
             (Instant::Seen(seen), Instant::Seen(own)) => seen.pull_back(at, weight, out, own),
+            (Instant::Vibration(of), _) => of.pull_back(at, weight, out),
             (Instant::Power(load), _) => {
                 let motions = at.motions();
                 let mut to = out.of_states();

@@ -1,5 +1,5 @@
-//! Multipliers of the rows of a joint at the instants of a run, and their derivatives. They are those of the
-//! index-1 equations of the states, for every method:
+//! Multipliers of the rows of a joint, or of all joints, and accelerations at the instants of a run, and their derivatives.
+//! They are those of the index-1 equations of the states, for every method:
 //!
 //! ```text
 //! M v̇ + Gᵀ λ = f(q, v, t),     G v̇ = γ(q, v, t)
@@ -10,11 +10,20 @@ use crate::linalg::SolveScalar;
 use crate::model::Model;
 use crate::system::Numbering;
 use crate::system::accelerations::Accelerations;
-use crate::system::redundant_rows::EXCHANGE_WEIGHT;
+use crate::system::redundant_rows::{EXCHANGE_WEIGHT, RedundantRows};
 use std::ops::Range;
 
-/// Multipliers of the rows of a joint.
-pub struct JointMultipliers<'a, S> {
+/// The joints whose reactions a quantity needs.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Reacting {
+    /// One joint.
+    Joint(usize),
+    /// All joints.
+    All,
+}
+
+/// Multipliers of the rows of joints, with the accelerations.
+pub struct Reactions<'a, S> {
     field: Accelerations<'a, S>,
     rows: Range<usize>,
     a: Vec<S>,
@@ -22,11 +31,15 @@ pub struct JointMultipliers<'a, S> {
     undetermined: Vec<Vec<f64>>,
 }
 
-/// Multipliers of the rows of a joint at an instant.
+/// Multipliers of the rows of joints at an instant.
 #[derive(Clone, Copy)]
 pub struct Rows<'a, S> {
     /// λ; empty if none are requested.
     pub lambda: &'a [S],
+    /// Accelerations of the same equations, in velocity numbering; empty if no multipliers are requested.
+    pub accelerations: &'a [S],
+    /// Rows that follow from others; `None` if no multipliers are requested.
+    pub left_out: Option<&'a RedundantRows>,
     /// Changes of the multipliers that move no body.
     pub undetermined: &'a [Vec<f64>],
 }
@@ -36,17 +49,31 @@ impl<S> Rows<'_, S> {
     pub fn none() -> Self {
         Self {
             lambda: &[],
+            accelerations: &[],
+            left_out: None,
             undetermined: &[],
         }
     }
 }
 
-impl<'a, S: SolveScalar> JointMultipliers<'a, S> {
-    /// The solver for joint `joint` of `model`, which has this numbering.
-    pub fn new(model: &'a Model<S>, numbering: &'a Numbering, joint: usize) -> Self {
+/// Cotangents of multipliers and accelerations at an instant.
+#[derive(Clone, Debug, Default)]
+pub struct RowCotangent {
+    /// Of the multipliers.
+    pub lambda: Vec<f64>,
+    /// Of the accelerations, in velocity numbering.
+    pub accelerations: Vec<f64>,
+}
+
+impl<'a, S: SolveScalar> Reactions<'a, S> {
+    /// The solver for joints of `model`, which has this numbering.
+    pub fn new(model: &'a Model<S>, numbering: &'a Numbering, of: Reacting) -> Self {
         Self {
             field: Accelerations::new(model, numbering),
-            rows: numbering.rows(joint),
+            rows: match of {
+                Reacting::Joint(joint) => numbering.rows(joint),
+                Reacting::All => 0..numbering.constraints(),
+            },
             a: vec![S::zero(); numbering.velocities()],
             lambda: vec![S::zero(); numbering.constraints()],
             undetermined: Vec::new(),
@@ -81,13 +108,18 @@ impl<'a, S: SolveScalar> JointMultipliers<'a, S> {
     fn found(&self) -> Rows<'_, S> {
         Rows {
             lambda: &self.lambda[self.rows.clone()],
+            accelerations: &self.a,
+            left_out: Some(self.field.left_out()),
             undetermined: &self.undetermined,
         }
     }
 
-    /// Number of the joint's rows.
-    pub fn count(&self) -> usize {
-        self.rows.len()
+    /// Cotangents that are zero.
+    pub fn zero_cotangent(&self) -> RowCotangent {
+        RowCotangent {
+            lambda: vec![0.0; self.rows.len()],
+            accelerations: vec![0.0; self.a.len()],
+        }
     }
 
     /// Number of factorisations so far.
@@ -96,20 +128,19 @@ impl<'a, S: SolveScalar> JointMultipliers<'a, S> {
     }
 }
 
-impl JointMultipliers<'_, f64> {
-    /// Pulls cotangents of the multipliers at the latest instant back to tangent positions, velocities and
-    /// parameters. Returns the derivative in time.
+impl Reactions<'_, f64> {
+    /// Pulls cotangents of the multipliers and accelerations at the latest instant back to tangent positions, velocities
+    /// and parameters. Returns the derivative in time.
     pub fn pull_back(
         &mut self,
-        by_rows: &[f64],
+        by: &RowCotangent,
         state: (&mut [f64], &mut [f64]),
         cot: &mut Model<f64>,
     ) -> f64 {
         let mut by_lambda = vec![0.0; self.lambda.len()];
-        by_lambda[self.rows.clone()].copy_from_slice(by_rows);
-        let by_a = vec![0.0; self.a.len()];
+        by_lambda[self.rows.clone()].copy_from_slice(&by.lambda);
         let found = (&self.a[..], &self.lambda[..]);
-        let both = (&by_a[..], &by_lambda[..]);
+        let both = (&by.accelerations[..], &by_lambda[..]);
         self.field.pull_back_both(found, both, state, cot)
     }
 }

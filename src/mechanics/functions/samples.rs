@@ -1,7 +1,7 @@
 //! Values of an instant quantity at the instants of a run.
 
 use super::instant::Instant;
-use super::multipliers::{JointMultipliers, Rows};
+use super::multipliers::{Reactions, Rows};
 use super::snapshot::Snapshot;
 use super::turning::turns;
 use crate::integrate::Trajectory;
@@ -34,12 +34,12 @@ pub(super) fn sample_with<S: SolveScalar, T>(
 ) -> Vec<T> {
     let turns = turns(instant.watched_rotation(), run);
     // The model may have rows that were left out of the run.
-    let numbering = instant.reacting_joint().map(|_| Numbering::new(model));
-    let joint = numbering.as_ref().zip(instant.reacting_joint());
-    let mut joint = joint.map(|(numbering, j)| JointMultipliers::new(model, numbering, j));
+    let numbering = instant.reacting().map(|_| Numbering::new(model));
+    let reacting = numbering.as_ref().zip(instant.reacting());
+    let mut reactions = reacting.map(|(numbering, of)| Reactions::new(model, numbering, of));
     let value = |k: usize| {
         let at = Snapshot {
-            joint: (joint.as_mut()).map_or(Rows::none(), |joint| joint.at(run, k)),
+            reactions: (reactions.as_mut()).map_or(Rows::none(), |own| own.at(run, k)),
             ..Snapshot::of(model, run, k)
         };
         of(&at, turn(&turns, k))

@@ -2,11 +2,12 @@
 
 use super::flight::Flight;
 use super::instant::{Gate, Projectile};
-use super::multipliers::Rows;
+use super::multipliers::{RowCotangent, Rows};
 use super::turning::Rotation;
 use crate::integrate::Trajectory;
 use crate::math::Scalar;
 use crate::model::Model;
+use crate::system::equilibrium::FrozenMode;
 use crate::system::joints::JointCotangent;
 use crate::system::{BodyMotion, InMotion, Numbering, flexible};
 
@@ -23,8 +24,8 @@ pub struct Snapshot<'a, S> {
     pub v: &'a [S],
     /// Accelerations; one entry per velocity number.
     pub a: &'a [S],
-    /// Multipliers of the rows of the joint whose reaction is measured, if any.
-    pub joint: Rows<'a, S>,
+    /// Multipliers of the rows of joints whose reactions are measured, if any.
+    pub reactions: Rows<'a, S>,
     /// Time \[s\].
     pub time: S,
 }
@@ -38,7 +39,7 @@ impl<'a, S: Scalar> Snapshot<'a, S> {
             q: run.q(k),
             v: run.v(k),
             a: run.a(k),
-            joint: Rows::none(),
+            reactions: Rows::none(),
             time: run.time(k),
         }
     }
@@ -109,12 +110,14 @@ pub struct SnapshotCotangent<'a> {
     pub v: &'a mut [f64],
     /// Of the accelerations.
     pub a: &'a mut [f64],
-    /// Of the multipliers.
-    pub lambda: &'a mut [f64],
+    /// Of the multipliers and of the accelerations with them.
+    pub reactions: &'a mut RowCotangent,
     /// Of the time, through the motions that drives prescribe.
     pub time: &'a mut f64,
     /// Of the model's parameters.
     pub model: &'a mut Model<f64>,
+    /// Derivatives in the model's parameters through vibrations.
+    pub modes: &'a mut Vec<FrozenMode>,
 }
 
 impl SnapshotCotangent<'_> {

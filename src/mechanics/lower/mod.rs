@@ -26,7 +26,7 @@ pub use planar::Plane;
 pub use unseen::Seen;
 pub use welded::Welded;
 
-use crate::functions::Scene;
+use crate::functions::{Instant, Scene};
 use crate::integrate::Trajectory;
 use crate::math::{Dual, Scalar};
 use crate::model::{ConstraintRow, Mobility, Model};
@@ -85,6 +85,9 @@ impl Lowering {
         variables: &[Range],
     ) -> Self {
         let mut designs = Designs::new(real, dual, variables);
+        if shakes(&designs.start) {
+            return Self::none();
+        }
         if !designs.start.model.flexible.is_empty() {
             return Self::of_flexible(&designs);
         }
@@ -119,6 +122,25 @@ impl Lowering {
             found.redundant = joints.map(|joint| joint.redundant).collect();
         }
         found
+    }
+
+    /// No reduction, as a function looks at vibrations of the whole machine.
+    fn none() -> Self {
+        let every = |reduction: &str| Kept {
+            reduction: reduction.to_owned(),
+            obstacles: vec![ViolatedCondition::plain(
+                "a function looks at vibrations of the whole machine in all directions",
+            )],
+        };
+        Self {
+            welded: Welded::default(),
+            plane: Err(every("a plane")),
+            points: Vec::new(),
+            non_rotating: NonRotating::default(),
+            fixed: Fixed::default(),
+            kept: Vec::new(),
+            redundant: Vec::new(),
+        }
     }
 
     /// The reductions of scenes with flexible bodies: a plane, or else the rotation of bodies that
@@ -245,4 +267,10 @@ fn find_points(
         }
     }
     points
+}
+
+/// Whether a function looks at vibrations, which need all motions that the machine can have.
+fn shakes(scene: &Scene<f64>) -> bool {
+    let mut all = scene.functions.iter().flat_map(|own| own.instants());
+    all.any(|own| matches!(own, Instant::Vibration(_)))
 }

@@ -133,6 +133,7 @@ fn looks_at<S: Scalar>(scene: &Scene<S>, function: &Function<S>) -> Vec<(usize, 
         // The energy depends on angular velocities, which are zero, and on heights of centres.
         Instant::Energy(_) => Vec::new(),
         Instant::Momentum { .. }
+        | Instant::Vibration(_)
         | Instant::StrainEnergy(_)
         | Instant::ShellStress { .. }
         | Instant::Deformation { .. }

@@ -56,7 +56,10 @@ impl Seen {
             let of_all = |instant: &&Instant<S>| {
                 matches!(
                     instant,
-                    Instant::Energy(_) | Instant::Momentum { .. } | Instant::AngularMomentum(_)
+                    Instant::Energy(_)
+                        | Instant::Momentum { .. }
+                        | Instant::AngularMomentum(_)
+                        | Instant::Vibration(_)
                 )
             };
             if function.instants().iter().any(of_all) {

@@ -15,6 +15,21 @@ pub fn guess<S: Scalar>(model: &Model<S>) -> (Vec<S>, Vec<S>) {
     (q, v)
 }
 
+/// As [`length_scale`], but by lengths of vectors, which turn with the scene.
+pub fn reach(model: &Model<f64>) -> f64 {
+    let joints = model.joints.iter().flat_map(|j| {
+        let (a, b) = (&j.frame_a, &j.frame_b);
+        [a.point.norm(), b.point.norm(), a.length.abs()]
+    });
+    let bodies = model.bodies.iter().enumerate();
+    let bodies = bodies.filter(|(i, _)| !model.is_counter(*i));
+    let bodies = bodies.map(|(_, b)| b.position.norm());
+    match joints.chain(bodies).fold(0.0, f64::max) {
+        0.0 => 1.0,
+        reach => reach,
+    }
+}
+
 /// Length scale of a scene's gaps and motions \[m\]: its largest lever arm or coordinate of a
 /// placement.
 pub fn length_scale<S: Scalar>(model: &Model<S>) -> f64 {

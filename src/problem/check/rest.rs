@@ -105,6 +105,19 @@ impl Checker<'_> {
         self.nonzero("/turning/axis", turning.axis);
     }
 
+    /// Checks the place of a vibration about the state at an instant.
+    pub(super) fn vibration(&mut self, pointer: &str) {
+        if self.document.is_rest() {
+            let found = "a vibration at an instant, of a machine at rest";
+            let expected = "the function \"frequency\" or \"damping_ratio\" itself, without \"final\" or \"ks\"";
+            self.fault(Finding::new(pointer, found, expected).of_key());
+        } else if pointer.starts_with("/simulation/until") {
+            let found = "a vibration as an event";
+            let expected = "a quantity of the motion";
+            self.fault(Finding::new(pointer, found, expected).of_key());
+        }
+    }
+
     /// Checks that a function needs no time.
     pub(super) fn at_rest(&mut self, pointer: &str, function: &OfMotion) {
         let windowed = |over: &Over| match over {

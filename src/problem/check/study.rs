@@ -186,7 +186,9 @@ impl Checker<'_> {
                 if !self.document.is_rest() && !self.damage.touches("analysis") {
                     let found = "a natural frequency of a machine in motion";
                     let expected = "\"analysis\": \"rest\", about which the machine vibrates";
-                    self.fault(Finding::new(pointer, found, expected).of_key());
+                    let hint = "\"final\" or \"value\" of \"frequency\" or \"damping_ratio\" is that at an instant of the motion";
+                    let finding = Finding::new(pointer, found, expected).of_key();
+                    self.fault(finding.hint(Some(hint.to_owned())));
                 }
             }
             OfMotion::CriticalSpeed(_) => {
@@ -279,6 +281,8 @@ impl Checker<'_> {
                 }
                 self.direction(&join(&pointer, "direction"), &of.direction);
             }
+            Instant::Frequency(_) => self.vibration(&join(pointer, "frequency")),
+            Instant::DampingRatio(_) => self.vibration(&join(pointer, "damping_ratio")),
             Instant::StrainEnergy(of) => {
                 self.measured_flexible(&join(pointer, "strain_energy"), &of.body);
             }

@@ -14,8 +14,13 @@ use crate::structures::functions::{Aggregate, Function};
 pub enum Asked {
     /// Of the structure and its static solutions.
     OfSolutions(Function),
-    /// Natural frequency of this number from 0 \[Hz\].
-    Frequency(usize),
+    /// Natural frequency \[Hz\].
+    Frequency {
+        /// Its number from 0.
+        mode: usize,
+        /// Whether its mode is followed by the shape that it has at the start.
+        follow: bool,
+    },
     /// Smooth lower bound of all frequencies with this ρ \[Hz\].
     LowestFrequency(f64),
     /// Mean square of the distances of other functions from measured values, in standard deviations.
@@ -53,7 +58,7 @@ impl Asked {
                 Function::StrainEnergy { .. } | Function::Compliance { .. } => "J",
                 Function::Stress { .. } => "1",
             },
-            Self::Frequency(_) | Self::LowestFrequency(_) => "Hz",
+            Self::Frequency { .. } | Self::LowestFrequency(_) => "Hz",
             Self::Misfit { .. } | Self::DistanceFromStart => "1",
         }
     }
@@ -118,7 +123,12 @@ fn of(document: &Document, function: &Written, cuts: usize) -> Asked {
                 aggregate,
             }
         }
-        Written::Frequency(frequency) => return Asked::Frequency(frequency.mode - 1),
+        Written::Frequency(own) => {
+            return Asked::Frequency {
+                mode: own.mode - 1,
+                follow: own.follow,
+            };
+        }
         Written::Misfit(misfit) => return of_numbers(document, misfit),
         Written::LowestFrequency(lowest) => return Asked::LowestFrequency(rho_of(lowest.rho)),
         Written::Ks(_)

@@ -32,7 +32,7 @@ use crate::structures::supports::{NodeUnknowns, Support};
 use mesh::{append, name_whole, of_file};
 use properties::{section, section_at, slots, thickness};
 use std::collections::HashSet;
-use std::sync::Arc;
+use std::sync::{Arc, OnceLock};
 
 /// Structures and load cases at a design.
 #[derive(Clone, Debug)]
@@ -66,6 +66,8 @@ pub struct Statics {
     pub functions: Vec<Asked>,
     /// Analysed problems, for the next designs.
     pub workspaces: Workspaces,
+    /// Modes at the start, by number, if some are followed by their shapes.
+    pub first_shapes: OnceLock<Vec<Vec<f64>>>,
 }
 
 /// The name of a set in the mesh of all structures.
@@ -168,6 +170,7 @@ impl Statics {
             cases: document.load_cases.keys().cloned().collect(),
             functions: functions::asked(document, cuts),
             workspaces: Workspaces::default(),
+            first_shapes: OnceLock::new(),
         })
     }
 

@@ -136,8 +136,11 @@ pub(super) fn gradients(
         let Sweep { of, node, .. } = sweep;
         of.finish(scene, run, &mut saddle, &node.1, &mut counts)?;
     }
+    let both = |sweep: Sweep| (sweep.of.cot, sweep.of.modes);
+    let (gradients, modes) = sweeps.into_iter().map(both).unzip();
     Ok(AdjointRun {
-        gradients: sweeps.into_iter().map(|sweep| sweep.of.cot).collect(),
+        gradients,
+        modes,
         counts,
     })
 }

@@ -132,8 +132,11 @@ pub(super) fn gradients(
         let Sweep { of, rates, .. } = sweep;
         of.finish(scene, run, &mut saddle, &rates.1, &mut counts)?;
     }
+    let both = |sweep: Sweep| (sweep.of.cot, sweep.of.modes);
+    let (gradients, modes) = sweeps.into_iter().map(both).unzip();
     Ok(AdjointRun {
-        gradients: sweeps.into_iter().map(|sweep| sweep.of.cot).collect(),
+        gradients,
+        modes,
         counts,
     })
 }

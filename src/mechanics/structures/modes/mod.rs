@@ -24,6 +24,7 @@ use super::state::NodalMotion;
 use super::statics::{StaticFailure, StaticProblem, mechanism, most_moved};
 use super::structure::Structure;
 use super::supports::{NodeUnknowns, Support};
+use crate::math::slices::dot;
 
 /// Why there are no modes.
 #[derive(Clone, Debug, PartialEq, thiserror::Error)]
@@ -61,6 +62,17 @@ pub enum ModalFailure {
         /// Relative distance of the eigenvalues.
         gap: f64,
     },
+    /// No mode has the shape of one that is followed.
+    #[error(
+        "no mode has the shape that mode {mode} has at the start: the nearest agrees to {:.0} % (modal assurance)",
+        100.0 * .assurance
+    )]
+    Unlike {
+        /// Its number, from 1.
+        mode: usize,
+        /// The largest assurance.
+        assurance: f64,
+    },
     /// The aggregate would have too many modes.
     #[error(
         "the aggregate with rho = {rho:.3e} s takes in more than {most} modes; a larger rho takes in fewer"
@@ -72,6 +84,9 @@ pub enum ModalFailure {
         most: usize,
     },
 }
+
+/// The least assurance of a mode that counts as one that is followed.
+pub const LIKE: f64 = 0.5;
 
 /// Counted work of [`ModalProblem::solve`].
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
@@ -181,6 +196,24 @@ impl ModalProblem {
     /// Number of unknowns.
     pub fn unknowns(&self) -> usize {
         self.assembly.unknowns.count
+    }
+
+    /// How like each of some modes of the latest solution is to another shape r, by its mass:
+    /// MAC = (rᵀ M y)² / ((rᵀ M r) (yᵀ M y)), from 0 to 1 (Allemang & Brown 1982).
+    pub fn assurances(&self, shape: &[f64], modes: &[Vec<f64>]) -> Vec<f64> {
+        let heavy = |x: &[f64]| {
+            let mut out = vec![0.0; x.len()];
+            let Pencil { pattern, mass, .. } = &self.pencil;
+            pattern.multiply(mass, x, &mut out);
+            out
+        };
+        let heavy_shape = heavy(shape);
+        let size = dot(shape, &heavy_shape);
+        let assurance = |y: &Vec<f64>| {
+            let own = dot(y, &heavy(y));
+            dot(y, &heavy_shape).powi(2) / (size * own)
+        };
+        modes.iter().map(assurance).collect()
     }
 
     /// The motion of the nodes in a mode.

@@ -16,7 +16,7 @@
 //! if their matrix of derivatives is a multiple of the unit matrix; else the speed has no derivative.
 
 use super::eigenpairs::{Cluster, clusters};
-use super::equations::{Layout, State};
+use super::equations::State;
 use super::krylov::lowest;
 use super::pencil::{At, Between, Matrices, contracted};
 use super::rest::{FLOOR, FREE};
@@ -157,7 +157,7 @@ fn at_equilibrium(
         // All with the pattern of rotation.
         let of = |speed: f64| {
             let turning = axis.at_speed(speed);
-            Matrices::new(layout, (solver.model, found, Some(&turning)), false)
+            Matrices::new(At::rest(layout, solver.model, found, Some(&turning)), false)
         };
         let mut matrices = of(0.0);
         let still = matrices.stiffness.values.clone();
@@ -175,8 +175,7 @@ fn at_equilibrium(
         for ((mass, (a, b)), k) in (matrices.mass.values.iter_mut()).zip(parts).zip(&still) {
             *mass = k - 0.5 * (a + b);
         }
-        let rows = layout.numbering.constraints() - layout.left_out.numbers().count();
-        let allowed = matrices.unknowns.saturating_sub(rows);
+        let allowed = At::rest(layout, solver.model, found, None).freedom();
         let free = (FREE * found.rate).max(ABOVE * least);
         let scales = (found.rate.sqrt(), free.sqrt());
         let mut count = 2 * number + 2;
@@ -221,7 +220,8 @@ fn slopes<S: Scalar>(
         let state: State<S> = in_scalar(model, given, (solver, found), held)?;
         let back = turning.at_speed(-turning.speed);
         let ways = [turning, &back];
-        let sums = ways.map(|way| contractions(solver.layout, (model, &state, Some(way)), own));
+        let sums =
+            ways.map(|way| contractions(At::rest(solver.layout, model, &state, Some(way)), own));
         let count = own.values.len();
         let entry = |i: usize, j: usize| {
             let k = i * count + j;
@@ -232,7 +232,7 @@ fn slopes<S: Scalar>(
 }
 
 /// lᵀ dK r by left and right vector.
-fn contractions<S: Scalar>(layout: &Layout, at: At<S>, own: &Cluster) -> Vec<Complex64> {
+fn contractions<S: Scalar>(at: At<S>, own: &Cluster) -> Vec<Complex64> {
     let (zero, one) = (Complex64::new(0.0, 0.0), Complex64::new(1.0, 0.0));
     let lefts = own.left.iter();
     let pairs: Vec<Between> = lefts
@@ -244,7 +244,7 @@ fn contractions<S: Scalar>(layout: &Layout, at: At<S>, own: &Cluster) -> Vec<Com
             })
         })
         .collect();
-    let sums = contracted(layout, at, &pairs);
+    let sums = contracted(at, &pairs);
     let one = |[re, im]: [S; 2]| Complex64::new(re.infinitesimal(), im.infinitesimal());
     sums.into_iter().map(one).collect()
 }

@@ -9,7 +9,7 @@
 //! so that sums over them have the derivative of the sum.
 
 use super::eigenpairs::{Cluster, clusters};
-use super::equations::{Layout, State};
+use super::equations::State;
 use super::krylov::lowest;
 use super::modes::{Vibration, WantedModes};
 use super::pencil::{At, Between, Matrices, contracted};
@@ -65,6 +65,15 @@ pub(super) struct Spectrum {
 }
 
 impl Spectrum {
+    /// That of a machine at an instant.
+    pub(super) fn of_instant(clusters: Vec<Cluster>) -> Self {
+        Self {
+            clusters,
+            damped: true,
+            wanted: WantedModes::default(),
+        }
+    }
+
     /// Cluster and place in it of each rate, by size |s|.
     pub(super) fn order(&self) -> Vec<(usize, usize)> {
         let all = self.clusters.iter().enumerate();
@@ -103,7 +112,6 @@ impl Solver<'_> {
             return Ok(known);
         }
         let none = |why: String| Err(AssemblyFailure::NoModes { why });
-        let layout = self.layout;
         let turning = self.given.turning.as_ref();
         if turning.is_none() {
             let stability = self.with_factors(found, |own| self.stability(own, found))??;
@@ -111,9 +119,9 @@ impl Solver<'_> {
                 return none("it is not stable".into());
             }
         }
-        let matrices = Matrices::new(layout, (self.model, found, turning), damped);
-        let rows = layout.numbering.constraints() - layout.left_out.numbers().count();
-        let allowed = matrices.unknowns.saturating_sub(rows);
+        let at = At::rest(self.layout, self.model, found, turning);
+        let matrices = Matrices::new(at, damped);
+        let allowed = at.freedom();
         let scales = (found.rate.sqrt(), (FREE * found.rate).sqrt());
         // An aggregate needs one.
         let asked = wanted.count.max(1);
@@ -152,7 +160,6 @@ impl Solver<'_> {
 
 /// The vibrations of a spectrum in any scalar, at a solution in it, exact to first order.
 pub(super) fn damped_vibrations<S: Scalar>(
-    layout: &Layout,
     at: At<S>,
     spectrum: &Spectrum,
 ) -> Vec<DampedVibration<S>> {
@@ -174,7 +181,7 @@ pub(super) fn damped_vibrations<S: Scalar>(
                 });
             }
         }
-        let sums = contracted(layout, at, &pairs);
+        let sums = contracted(at, &pairs);
         for (c, [re, im]) in of.into_iter().zip(sums) {
             // The real parts are zero but for what is not converged.
             changes[c] += Complex64::new(re.infinitesimal(), im.infinitesimal());
@@ -193,12 +200,8 @@ pub(super) fn damped_vibrations<S: Scalar>(
 }
 
 /// The same without damping, the lowest frequency first.
-pub(super) fn undamped_vibrations<S: Scalar>(
-    layout: &Layout,
-    at: At<S>,
-    spectrum: &Spectrum,
-) -> Vec<Vibration<S>> {
-    let all = damped_vibrations(layout, at, spectrum);
+pub(super) fn undamped_vibrations<S: Scalar>(at: At<S>, spectrum: &Spectrum) -> Vec<Vibration<S>> {
+    let all = damped_vibrations(at, spectrum);
     all.iter().map(DampedVibration::undamped).collect()
 }
 

@@ -11,7 +11,7 @@ use crate::system::in_motion::InMotion;
 use crate::system::joints;
 use crate::system::loads;
 use crate::system::numbering::Numbering;
-use crate::system::placement::length_scale;
+use crate::system::placement::reach;
 use crate::system::reduce;
 use crate::system::redundant_rows::RedundantRows;
 use std::ops::Range;
@@ -166,7 +166,7 @@ impl<'a> Layout<'a> {
     /// `scale`.
     pub(super) fn moved(&self, change: &[f64], scale: f64) -> f64 {
         let y = self.expanded(change[self.groups()[0].clone()].to_vec());
-        let part = |x: &[f64]| x.iter().fold(0.0_f64, |m, x| m.max(x.abs()));
+        let part = |x: &[f64]| dot(x, x).sqrt();
         y.chunks_exact(6).fold(0.0_f64, |size, six| {
             size.max(part(&six[..3]) / scale).max(part(&six[3..]))
         })
@@ -321,7 +321,7 @@ impl<'a> Layout<'a> {
         BodyMotion::all(numbering, placed, &still, &mut motions);
         let at = InMotion::new(model, numbering, &motions, 0.0);
         joints::gradients(&at, &mut gradients);
-        let scale = length_scale(model);
+        let scale = reach(model);
         let mut basis: Vec<Vec<f64>> = Vec::new();
         for row in (0..nc).filter(|&row| !left_out.contains(row)) {
             let mut unit = vec![0.0; nc];

@@ -2,7 +2,7 @@
 //! rest, [K + σ M̃, Gᵀ; G, 0] with the metric M̃ of [`RigidMetric`].
 
 use super::equations::{Layout, State};
-use super::pencil::emit_at;
+use super::pencil::{At, emit_at};
 use super::turning::Weights;
 use crate::linalg::{Emit, KnownPivots, Pattern, SingularMatrix, SparseLu, SparseMatrix};
 use crate::math::Scalar;
@@ -14,7 +14,7 @@ use crate::system::in_motion::InMotion;
 use crate::system::joints;
 use crate::system::kkt::{emit_gradients, emit_reaction_jacobian, emit_transposed_gradients};
 use crate::system::loads::{self, LoadEntries};
-use crate::system::placement::length_scale;
+use crate::system::placement::reach;
 use crate::system::reduce::emit_reduced;
 
 /// Parts of rows and columns in velocity numbering: positions, accelerations, velocities.
@@ -86,7 +86,7 @@ impl RigidMetric {
     pub(super) fn of(model: &Model<f64>) -> Self {
         let mass: f64 = model.bodies.iter().map(|body| body.mass).sum();
         let mean = mass / model.bodies.len().max(1) as f64;
-        let length = length_scale(model);
+        let length = reach(model);
         Self {
             mass: Self::LEAST * mean,
             inertia: Self::LEAST * mean * length * length,
@@ -242,9 +242,9 @@ fn emit_matrix(
     let numbering = layout.numbering;
     match &layout.turning {
         Some(turning) => {
-            let at = (model, x, Some(turning));
+            let at = At::rest(layout, model, x, Some(turning));
             let lambda = PARTS * numbering.velocities();
-            emit_at(layout, at, Weights::stiffness(), lambda, emit);
+            emit_at(at, Weights::stiffness(), lambda, emit);
         }
         None => emit_balance(layout, (model, x), emit),
     }

@@ -24,6 +24,8 @@ mod damped;
 mod descent;
 mod eigenpairs;
 mod equations;
+mod followed;
+mod instant;
 mod krylov;
 mod matrix;
 mod modes;
@@ -40,7 +42,7 @@ use super::bodies::{positions_of, velocities_of};
 use super::failure::AssemblyFailure;
 use super::nearest::nearest;
 use super::numbering::Numbering;
-use super::placement::{guess, length_scale};
+use super::placement::{guess, reach};
 use super::reduce;
 use super::redundancy;
 use super::redundant_rows::RedundantRows;
@@ -52,6 +54,9 @@ use critical::{Excited, critical_speed};
 pub use damped::DampedVibration;
 use damped::{Spectrum, damped_vibrations, undamped_vibrations};
 use equations::{Layout, State};
+pub use followed::Follow;
+use followed::{FirstShape, as_damped, shapes_of_modes, shapes_of_spectrum};
+pub use instant::{FrozenMode, InstantGradient, InstantState};
 use matrix::Factors;
 use modes::{Mode, vibrations};
 pub use modes::{Vibration, WantedModes};
@@ -106,6 +111,7 @@ struct Known {
     spectra: Vec<(Vec<f64>, Spectrum)>,
     critical: Vec<(Vec<f64>, Excited)>,
     free: Option<(Vec<f64>, Vec<FreeMotion>)>,
+    first_shapes: Vec<FirstShape>,
 }
 
 impl KnownStarts {
@@ -172,6 +178,8 @@ pub struct Vibrations<S> {
     pub undamped: Vec<Vibration<S>>,
     /// Those with damping, the lowest |s| first.
     pub damped: Vec<DampedVibration<S>>,
+    /// Those that are followed by their shapes, as requested; without damping where it was not asked for.
+    pub followed: Vec<DampedVibration<S>>,
     /// Critical speeds.
     pub critical: Vec<CriticalSpeed<S>>,
 }
@@ -181,6 +189,7 @@ impl<S> Default for Vibrations<S> {
         Self {
             undamped: Vec::new(),
             damped: Vec::new(),
+            followed: Vec::new(),
             critical: Vec::new(),
         }
     }
@@ -195,6 +204,8 @@ pub struct Request<S> {
     pub turning: Option<Turning<S>>,
     /// The vibrations.
     pub modes: WantedModes,
+    /// Those of them that are followed by their shapes.
+    pub followed: Vec<Follow>,
 }
 
 /// Moves the bodies of `model`, which are placed and undeformed, to the quasi-static start, and gives them velocities
@@ -214,7 +225,7 @@ pub fn settle<S: Scalar>(
     let (state, v, mut vibrations) = with_solution(of, turning, known, |given, solver, found| {
         let state = in_scalar(&own, given, (solver, found), Held::ByAll)?;
         let v = solver.layout.of_rigid(&state.v);
-        let vibrations = solver.vibrations((&own, &state, turning), found, &request.modes)?;
+        let vibrations = solver.vibrations((&own, &state, turning), found, request)?;
         Ok((state, v, vibrations))
     })?;
     if let Some(turning) = turning {
@@ -323,7 +334,7 @@ fn with_solution<S: Scalar, T>(
         layout: &layout,
         model: &real,
         given: &start,
-        scale: length_scale(&real),
+        scale: reach(&real),
         mass: real.bodies.iter().map(|body| body.mass).sum(),
         numbers,
         known,
@@ -431,32 +442,51 @@ impl Solver<'_> {
     /// The wanted vibrations about a solution in any scalar, without critical speeds.
     fn vibrations<S: Scalar>(
         &self,
-        at: At<S>,
+        (model, x, turning): (&Model<S>, &State<S>, Option<&Turning<S>>),
         found: &State<f64>,
-        wanted: &WantedModes,
+        request: &Request<S>,
     ) -> Result<Vibrations<S>, AssemblyFailure> {
         let (layout, mut out) = (self.layout, Vibrations::default());
+        let (at, wanted) = (At::rest(layout, model, x, turning), &request.modes);
+        let unknowns = layout.numbering.unknowns();
+        let (mut shapes, mut damped_shapes) = (Vec::new(), Vec::new());
         if self.given.turning.is_some() {
             let all = wanted.all_damped();
             if !all.none_undamped() {
-                out.damped =
-                    damped_vibrations(layout, at, &self.spectrum(found, &all, (true, true))?);
+                let spectrum = self.spectrum(found, &all, (true, true))?;
+                out.damped = damped_vibrations(at, &spectrum);
                 out.undamped = out.damped.iter().map(DampedVibration::undamped).collect();
+                damped_shapes = shapes_of_spectrum(&spectrum, unknowns);
             }
-            return Ok(out);
+        } else {
+            if !wanted.none_undamped() {
+                (out.undamped, shapes) = match self.known_modes(found, wanted)? {
+                    Some(modes) => (
+                        vibrations(layout, (model, x), &modes),
+                        shapes_of_modes(&modes, unknowns),
+                    ),
+                    None => {
+                        let spectrum = self.spectrum(found, wanted, (false, true))?;
+                        let all = undamped_vibrations(at, &spectrum);
+                        (all, shapes_of_spectrum(&spectrum, unknowns))
+                    }
+                };
+            }
+            if wanted.damped > 0 {
+                let wanted = wanted.damped_alone();
+                let spectrum = self.spectrum(found, &wanted, (true, true))?;
+                out.damped = damped_vibrations(at, &spectrum);
+                damped_shapes = shapes_of_spectrum(&spectrum, unknowns);
+            }
         }
-        if !wanted.none_undamped() {
-            out.undamped = match self.known_modes(found, wanted)? {
-                Some(modes) => vibrations(layout, (at.0, at.1), &modes),
-                None => {
-                    undamped_vibrations(layout, at, &self.spectrum(found, wanted, (false, true))?)
-                }
-            };
-        }
-        if wanted.damped > 0 {
-            let wanted = wanted.damped_alone();
-            out.damped =
-                damped_vibrations(layout, at, &self.spectrum(found, &wanted, (true, true))?);
+        for &own in &request.followed {
+            let damped = own.damped || self.given.turning.is_some();
+            let shapes = if damped { &damped_shapes } else { &shapes };
+            let place = self.follow(found, own, shapes)?;
+            out.followed.push(match damped {
+                true => out.damped[place],
+                false => as_damped(&out.undamped[place]),
+            });
         }
         Ok(out)
     }

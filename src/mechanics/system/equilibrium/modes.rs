@@ -41,6 +41,8 @@ const FIRST: usize = 6;
 pub struct WantedModes {
     /// So many of the lowest.
     pub count: usize,
+    /// So many more, if there are, among which followed modes are sought.
+    pub beyond: usize,
     /// All up to ρ (f − f_1) = 38, beyond which their weights are round-off; the smallest ρ \[s\].
     pub rho: Option<f64>,
     /// So many with damping.
@@ -73,7 +75,7 @@ impl WantedModes {
     }
 
     pub(super) fn least(&self) -> usize {
-        self.count.max(if self.rho.is_some() { FIRST } else { 0 })
+        (self.count + self.beyond).max(if self.rho.is_some() { FIRST } else { 0 })
     }
 
     fn suffice(&self, modes: &[Mode]) -> bool {
@@ -100,7 +102,7 @@ pub(super) struct Mode {
     /// ω² \[1/s²\].
     square: f64,
     /// y and μ, with yᵀ M y = 1.
-    shape: Vec<f64>,
+    pub shape: Vec<f64>,
     /// Whether another one has the same frequency, so that it has no derivative.
     repeated: bool,
 }

@@ -4,10 +4,11 @@
 //! [K + s D + s² M, Gᵀ; G, 0] [y; μ] = 0,     K = ∂B/∂q,   D = ∂B/∂v,   B = M v̇ − f(q, v) + Gᵀ λ,
 //! ```
 //!
-//! where v and v̇ change as [`super::turning`] says.
+//! where v and v̇ change as [`super::turning`] says; or about the state of a motion at an instant, with the matrices that
+//! it has there.
 
 use super::equations::{Layout, State};
-use super::turning::{Steady, Turning, Weights};
+use super::turning::{Frames, Steady, Turning, Weights};
 use crate::linalg::{Emit, Pattern, SingularMatrix, SolveScalar, SparseLu, SparseMatrix};
 use crate::math::{Complex64, Scalar};
 use crate::model::Model;
@@ -18,49 +19,113 @@ use crate::system::in_motion::InMotion;
 use crate::system::joints;
 use crate::system::kkt::{emit_gradients, emit_reaction_jacobian, emit_transposed_gradients};
 use crate::system::loads::{self, LoadEntries};
+use crate::system::numbering::Numbering;
 use crate::system::reduce::emit_reduced;
+use crate::system::redundant_rows::RedundantRows;
 
-/// A model at a state, with its rotation.
-pub(super) type At<'a, S> = (&'a Model<S>, &'a State<S>, Option<&'a Turning<S>>);
+/// A model at a state, about which motions are small.
+#[derive(Clone, Copy)]
+pub(super) struct At<'a, S> {
+    pub model: &'a Model<S>,
+    pub numbering: &'a Numbering,
+    pub left_out: &'a RedundantRows,
+    pub q: &'a [S],
+    pub lambda: &'a [S],
+    pub moves: Moves<'a, S>,
+}
+
+/// How a machine moves.
+#[derive(Clone, Copy)]
+pub(super) enum Moves<'a, S> {
+    /// It is at rest.
+    Not,
+    /// It turns steadily.
+    Steadily(&'a Turning<S>),
+    /// It has these velocities and accelerations, in velocity numbering, at a time.
+    AtInstant { v: &'a [S], a: &'a [S], time: S },
+}
+
+impl<'a, S: Scalar> At<'a, S> {
+    /// A model at rest, also in a turning frame.
+    pub(super) fn rest(
+        layout: &'a Layout,
+        model: &'a Model<S>,
+        x: &'a State<S>,
+        turning: Option<&'a Turning<S>>,
+    ) -> Self {
+        Self {
+            model,
+            numbering: layout.numbering,
+            left_out: layout.left_out,
+            q: &x.q,
+            lambda: &x.lambda,
+            moves: turning.map_or(Moves::Not, Moves::Steadily),
+        }
+    }
+
+    /// Number of independent motions that the joints allow.
+    pub(super) fn freedom(&self) -> usize {
+        let rows = self.numbering.constraints() - self.left_out.numbers().count();
+        self.numbering.unknowns().saturating_sub(rows)
+    }
+
+    /// Velocities and accelerations of all bodies, and the time.
+    fn motion(&self) -> ([Vec<S>; 2], S) {
+        match self.moves {
+            Moves::Not => {
+                let still = vec![S::zero(); self.numbering.velocities()];
+                ([still.clone(), still], S::zero())
+            }
+            Moves::Steadily(turning) => (
+                turning.velocities(self.model, self.numbering, self.q),
+                S::zero(),
+            ),
+            Moves::AtInstant { v, a, time } => ([v.to_vec(), a.to_vec()], time),
+        }
+    }
+
+    /// The frames in which small motions are seen, unless they are at rest.
+    fn frames(&self) -> Option<Frames<S>> {
+        let of = (self.model, self.numbering, self.q);
+        match self.moves {
+            Moves::Not => None,
+            Moves::Steadily(turning) => Some(Frames::turning(of, turning)),
+            Moves::AtInstant { v, a, .. } => Some(Frames::of_bodies(of, v, a)),
+        }
+    }
+}
 
 /// Emits K, D and M, each with its weight, and the rows of constraints with that of K. Columns and rows are those of unknowns
 /// of velocity and of constraints.
-pub(super) fn emit_pencil<S: Scalar>(
-    layout: &Layout,
-    at: At<S>,
-    weights: Weights<S>,
-    emit: &mut dyn Emit<S>,
-) {
-    emit_reduced(layout.numbering, 1, emit, |emit| {
-        emit_at(layout, at, weights, layout.numbering.velocities(), emit);
+pub(super) fn emit_pencil<S: Scalar>(at: At<S>, weights: Weights<S>, emit: &mut dyn Emit<S>) {
+    emit_reduced(at.numbering, 1, emit, |emit| {
+        emit_at(at, weights, at.numbering.velocities(), emit);
     });
 }
 
 /// The same in velocity numbering, with the multipliers from `lambda` on.
 pub(super) fn emit_at<S: Scalar>(
-    layout: &Layout,
-    (model, x, turning): At<S>,
+    at: At<S>,
     weights: Weights<S>,
     lambda: usize,
     emit: &mut dyn Emit<S>,
 ) {
-    let numbering = layout.numbering;
+    let At {
+        model, numbering, ..
+    } = at;
     let (nv, nc) = (numbering.velocities(), numbering.constraints());
     let (y, v) = (0, lambda + nc);
     let a = v + nv;
-    let [speeds, accelerations] = match turning {
-        Some(own) => own.velocities(model, numbering, &x.q),
-        None => [vec![S::zero(); nv], vec![S::zero(); nv]],
-    };
+    let ([speeds, accelerations], time) = at.motion();
     let (mut motions, mut gradients) = (Vec::new(), Vec::new());
-    BodyMotion::all(numbering, &x.q, &speeds, &mut motions);
-    let here = InMotion::new(model, numbering, &motions, S::zero());
+    BodyMotion::all(numbering, at.q, &speeds, &mut motions);
+    let here = InMotion::new(model, numbering, &motions, time);
     joints::gradients(&here, &mut gradients);
-    layout.left_out.clear_gradients(&mut gradients);
+    at.left_out.clear_gradients(&mut gradients);
     let of = (model, numbering);
     let k = weights.stiffness;
     let columns = (weights, [v, a]);
-    let mut steady = Steady::new((model, numbering, &x.q), turning, columns, emit);
+    let mut steady = Steady::new(at.frames(), columns, emit);
     let rates = Rates {
         by_state: S::zero(),
         h: S::one(),
@@ -82,14 +147,14 @@ pub(super) fn emit_at<S: Scalar>(
         steady.add_block(y + o + 3, a + o + 3, &body.inertia);
     }
     flexible::emit_mass(of, &motions, (y, a), S::one(), &mut steady);
-    emit_reaction_jacobian(&here, &x.lambda, (y, y), k, &mut steady);
+    emit_reaction_jacobian(&here, at.lambda, (y, y), k, &mut steady);
     emit_transposed_gradients(model, numbering, &gradients, (y, lambda), k, &mut steady);
     let mut scaled = Scaled {
         by: k,
         emit: &mut steady,
     };
     emit_gradients(model, numbering, &gradients, (lambda, y), &mut scaled);
-    for row in layout.left_out.numbers() {
+    for row in at.left_out.numbers() {
         scaled.add(lambda + row, lambda + row, S::one());
     }
 }
@@ -118,10 +183,10 @@ pub(super) struct Matrices {
 
 impl Matrices {
     /// Those at a state; without damping, D is zero.
-    pub(super) fn new(layout: &Layout, at: At<f64>, damped: bool) -> Self {
-        let order = layout.numbering.unknowns() + layout.numbering.constraints();
+    pub(super) fn new(at: At<f64>, damped: bool) -> Self {
+        let order = at.numbering.unknowns() + at.numbering.constraints();
         let pattern = Pattern::record(order, |to: &mut dyn Emit<f64>| {
-            emit_pencil(layout, at, Weights::at(1.0), to);
+            emit_pencil(at, Weights::at(1.0), to);
         });
         let of = |stiffness: f64, damping: f64, mass: f64| {
             let mut matrix = SparseMatrix::new(pattern.clone());
@@ -130,11 +195,11 @@ impl Matrices {
                 damping,
                 mass,
             };
-            matrix.assemble(|to| emit_pencil(layout, at, weights, to));
+            matrix.assemble(|to| emit_pencil(at, weights, to));
             matrix
         };
         Self {
-            unknowns: layout.numbering.unknowns(),
+            unknowns: at.numbering.unknowns(),
             stiffness: of(1.0, 0.0, 0.0),
             damping: of(0.0, if damped { 1.0 } else { 0.0 }, 0.0),
             mass: of(0.0, 0.0, 1.0),
@@ -197,7 +262,7 @@ pub(super) struct Between<'a> {
 }
 
 /// By pair: real and imaginary part of lᵀ (a K + b D + c M) r in any scalar, with the rows of constraints in K.
-pub(super) fn contracted<S: Scalar>(layout: &Layout, at: At<S>, pairs: &[Between]) -> Vec<[S; 2]> {
+pub(super) fn contracted<S: Scalar>(at: At<S>, pairs: &[Between]) -> Vec<[S; 2]> {
     let mut sums = vec![[S::zero(); 2]; pairs.len()];
     for which in 0..3 {
         let weight = |k: usize| if k == which { S::one() } else { S::zero() };
@@ -211,7 +276,7 @@ pub(super) fn contracted<S: Scalar>(layout: &Layout, at: At<S>, pairs: &[Between
             which,
             sums: &mut sums,
         };
-        emit_pencil(layout, at, weights, &mut product);
+        emit_pencil(at, weights, &mut product);
     }
     sums
 }

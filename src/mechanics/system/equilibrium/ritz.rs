@@ -9,21 +9,69 @@ const DIMENSION: usize = 24;
 const CONVERGED: f64 = 1e-2;
 /// Most iterations for the eigenvalues of a small matrix.
 const SWEEPS: usize = 1000;
-/// A vector lies in the space of those before if this part of it is left.
+/// A vector lies in the space of those before if this part of it is left; and so does one that is found again.
 const DEPENDENT: f64 = 1e-8;
+const DISTINCT: f64 = 0.1;
 
 /// Real eigenvalues of a matrix of the order n, given by its products, that `counts(μ, largest |μ|)`, with their vectors
-/// of unit length in the metric that `weighted` multiplies with. At most `independent` are distinct. `None` if a product
-/// is not finite.
+/// of unit length in the metric that `weighted` multiplies with; all copies of each, at most `independent` in all. `None` if
+/// a product is not finite.
 pub(super) fn ritz_vectors(
     mut product: impl FnMut(&[f64]) -> Vec<f64>,
     weighted: impl Fn(&[f64]) -> Vec<f64>,
     (n, independent): (usize, usize),
     counts: impl Fn(f64, f64) -> bool,
 ) -> Option<Vec<(f64, Vec<f64>)>> {
+    let mut all: Vec<(f64, Vec<f64>)> = Vec::new();
+    let mut known: Vec<[Vec<f64>; 2]> = Vec::new();
+    // A Krylov space has one copy of an eigenvalue. Others are in the space without it.
+    while known.len() < independent {
+        let found = one_of_each(&mut product, &weighted, (&known, n), (independent, &counts))?;
+        let before = known.len();
+        for (value, mut y) in found {
+            let length = dot(&y, &weighted(&y)).sqrt();
+            without(&known, &mut y);
+            let metric = weighted(&y);
+            let rest = dot(&y, &metric).sqrt();
+            if rest > DISTINCT * length {
+                known.push([&y, &metric].map(|x| x.iter().map(|x| x / rest).collect()));
+                all.push((value, y));
+            }
+        }
+        if known.len() == before {
+            break;
+        }
+    }
+    Some(all)
+}
+
+/// Removes the parts along orthonormal vectors with their products with the metric; twice, so that round-off of the first
+/// pass goes.
+fn without(known: &[[Vec<f64>; 2]], from: &mut [f64]) {
+    for _ in 0..2 {
+        for [y, with_metric] in known {
+            let along = dot(with_metric, from);
+            add_scaled(from, -along, y);
+        }
+    }
+}
+
+/// One vector of each eigenvalue that counts, in the space that is orthogonal to the known ones.
+fn one_of_each(
+    full: &mut impl FnMut(&[f64]) -> Vec<f64>,
+    weighted: &impl Fn(&[f64]) -> Vec<f64>,
+    (known, n): (&[[Vec<f64>; 2]], usize),
+    (independent, counts): (usize, &impl Fn(f64, f64) -> bool),
+) -> Option<Vec<(f64, Vec<f64>)>> {
+    let mut product = |y: &[f64]| {
+        let mut out = full(y);
+        without(known, &mut out);
+        out
+    };
     // Any vector has a part of each eigenvector.
+    let seed = 1.0 + known.len() as f64;
     let any: Vec<f64> = (0..n)
-        .map(|i| (1.0 + i as f64).sqrt().fract() - 0.5)
+        .map(|i| (seed * (1.0 + i as f64).sqrt()).fract() - 0.5)
         .collect();
     let mut next = product(&any);
     let mut basis: Vec<[Vec<f64>; 2]> = Vec::new();
@@ -48,7 +96,7 @@ pub(super) fn ritz_vectors(
         if !basis.is_empty() {
             columns.push(column);
         }
-        if rest <= DEPENDENT * before || basis.len() == DIMENSION.min(independent) {
+        if rest <= DEPENDENT * before || basis.len() == DIMENSION.min(independent - known.len()) {
             break;
         }
         next.iter_mut().for_each(|x| *x /= rest);

@@ -8,7 +8,7 @@
 use super::Solver;
 use super::equations::State;
 use super::matrix::Factors;
-use super::pencil::Matrices;
+use super::pencil::{At, Matrices};
 use crate::math::rotation::{compose, from_axis_angle, matrix};
 use crate::math::slices::dot;
 use crate::math::{Mat3, Vec3};
@@ -80,7 +80,7 @@ impl Solver<'_> {
         motion.truncate(n);
         let moved = self.turned(&motion, &rotation);
         let product = |at: &State<f64>, y: &[f64]| {
-            let matrices = Matrices::new(layout, (self.model, at, Some(turning)), true);
+            let matrices = Matrices::new(At::rest(layout, self.model, at, Some(turning)), true);
             let mut padded = y.to_vec();
             padded.resize(matrices.order(), 0.0);
             let mut out = matrices.stiffness.multiply(&padded);

@@ -15,6 +15,9 @@
 //! ```
 //!
 //! so the equations of the machine themselves give centrifugal and gyroscopic terms: no other formulas do.
+//!
+//! At an instant of a motion each body sees them in its own frame, with Ω and Ω̇ of the body. Then
+//! A_y = diag(Ω̃ Ω̃ + skew(Ω̇), skew(ω̇)).
 
 use crate::linalg::Emit;
 use crate::math::rotation::matrix;
@@ -79,25 +82,56 @@ impl<S: Scalar> Turning<S> {
         }
         [v, a]
     }
+}
 
-    /// By body, blocks of V_y, A_y and A_1 for its displacement and its rotation; zero of carriers.
-    fn blocks(&self, model: &Model<S>, numbering: &Numbering, q: &[S]) -> Vec<[[Mat3<S>; 2]; 3]> {
-        let omega = self.omega();
-        let turned = skew(&omega);
-        let zero = Mat3::zeros();
+/// Blocks of V_y, A_y and A_1 of a body, each for its displacement and its rotation.
+type Blocks<S> = [[Mat3<S>; 2]; 3];
+
+/// The frames in which small motions are seen, by body. Those of carriers of elastic coordinates do not turn.
+pub(super) struct Frames<S>(Vec<Blocks<S>>);
+
+impl<S: Scalar> Frames<S> {
+    /// One frame that turns with the machine.
+    pub(super) fn turning(of: (&Model<S>, &Numbering, &[S]), turning: &Turning<S>) -> Self {
+        let (omega, still) = (turning.omega(), Vec3::zeros());
+        Self::new(of, |_, rotation| {
+            let own = rotation.tr_mul(&omega);
+            ([omega, own], [still, still])
+        })
+    }
+
+    /// The frames of the bodies themselves, which move so. Point masses have that of ground.
+    pub(super) fn of_bodies(of: (&Model<S>, &Numbering, &[S]), v: &[S], a: &[S]) -> Self {
+        let numbering = of.1;
+        let three = |x: &[S], at: usize| Vec3::new(x[at], x[at + 1], x[at + 2]);
+        Self::new(of, |i, rotation| {
+            let o = numbering.velocity(i) + 3;
+            let [speed, faster] = [three(v, o), three(a, o)];
+            ([rotation * speed, speed], [rotation * faster, faster])
+        })
+    }
+
+    /// `rates` gives the angular velocity of a frame and the angular acceleration, each in ground axes and in those of the
+    /// body.
+    fn new(
+        (model, numbering, q): (&Model<S>, &Numbering, &[S]),
+        rates: impl Fn(usize, &Mat3<S>) -> ([Vec3<S>; 2], [Vec3<S>; 2]),
+    ) -> Self {
         let one = |i: usize| {
             if model.is_carrier(i) {
-                return [[zero; 2]; 3];
+                return [[Mat3::zeros(); 2]; 3];
             }
             let (_, orientation) = positions_of(&q[numbering.position(i)..]);
-            let own = skew(&matrix(&orientation).tr_mul(&omega));
+            let (speeds, faster) = rates(i, &matrix(&orientation));
+            let [turned, own] = speeds.map(|x| skew(&x));
+            let [turned_faster, own_faster] = faster.map(|x| skew(&x));
             [
                 [turned, own],
-                [turned * turned, zero],
+                [turned * turned + turned_faster, own_faster],
                 [turned * S::from(2.0), own],
             ]
         };
-        (0..model.bodies.len()).map(one).collect()
+        Self((0..model.bodies.len()).map(one).collect())
     }
 }
 
@@ -131,15 +165,14 @@ pub(super) struct Steady<'a, S> {
     columns: [usize; 2],
     /// By body, its displacement and its rotation: the factors of y for velocities and accelerations.
     blocks: Option<Vec<[[Mat3<S>; 2]; 2]>>,
-    /// Those without steady rotation.
+    /// Those of frames that do not turn.
     factors: [S; 2],
     emit: &'a mut dyn Emit<S>,
 }
 
 impl<'a, S: Scalar> Steady<'a, S> {
     pub(super) fn new(
-        (model, numbering, q): (&Model<S>, &Numbering, &[S]),
-        turning: Option<&Turning<S>>,
+        frames: Option<Frames<S>>,
         (weights, columns): (Weights<S>, [usize; 2]),
         emit: &'a mut dyn Emit<S>,
     ) -> Self {
@@ -149,16 +182,13 @@ impl<'a, S: Scalar> Steady<'a, S> {
             mass,
         } = weights;
         let unit = Mat3::<S>::identity();
-        let of = |[by_y, by_rest, by_rate]: [[Mat3<S>; 2]; 3]| {
+        let of = |[by_y, by_rest, by_rate]: Blocks<S>| {
             [
                 [0, 1].map(|k| by_y[k] * stiffness + unit * damping),
                 [0, 1].map(|k| by_rest[k] * stiffness + by_rate[k] * damping + unit * mass),
             ]
         };
-        let blocks = turning.map(|own| {
-            let all = own.blocks(model, numbering, q);
-            all.into_iter().map(of).collect()
-        });
+        let blocks = frames.map(|own| own.0.into_iter().map(of).collect());
         Self {
             columns,
             blocks,
