@@ -153,10 +153,16 @@ impl Solver<'_> {
         let layout = self.layout;
         let mut x = layout.start(self.given);
         let residual = layout.residual(self.model, self.given, &x);
-        let without_joints = match self.rate(&residual) {
-            0.0 => 1.0,
-            rate => rate,
-        };
+        let turning = layout.turning.as_ref();
+        let spin = turning.map_or(0.0, |own| own.speed * own.speed);
+        let without_joints = self.rate(&residual);
+        // Gravity is a load of every machine.
+        if self.model.gravity.norm() == 0.0
+            && let Some(rate) = self.rate_of_stiffness(factors, (&x, without_joints))?
+        {
+            x.rate = rate.max(spin);
+            return Ok(x);
+        }
         let shift = ALONG_FORCES * without_joints;
         let made = factors.make(layout, self.model, (&x, shift));
         made.map_err(|_| AssemblyFailure::Singular)?;
@@ -164,8 +170,6 @@ impl Solver<'_> {
         change[layout.groups()[0].clone()].fill(0.0);
         layout.advance(&mut x, &change);
         let with_joints = self.rate(&layout.residual(self.model, self.given, &x));
-        let turning = layout.turning.as_ref();
-        let spin = turning.map_or(0.0, |own| own.speed * own.speed);
         x.rate = with_joints.max(LEAST_RATE * without_joints).max(spin);
         Ok(x)
     }

@@ -15,6 +15,7 @@
 
 use super::equations::{Layout, State};
 use super::matrix::{Factors, contracted};
+use super::rest::FLOOR;
 use super::{KnownStarts, Solver};
 use crate::math::Scalar;
 use crate::math::slices::{add_scaled, dot};
@@ -32,6 +33,9 @@ const SPARE: usize = 3;
 const ASYMMETRIC: f64 = 1e-7;
 /// Relative distance of eigenvalues that are equal.
 const SAME: f64 = 1e-9;
+
+/// σ is raised to that of the lowest mode if it is below this part of it.
+const SMALL_SHIFT: f64 = 1e-2;
 
 /// First number of modes of an aggregate.
 const FIRST: usize = 6;
@@ -206,7 +210,8 @@ impl Solver<'_> {
         let rows = self.layout.numbering.constraints() - self.layout.left_out.numbers().count();
         let allowed = (softened.order().saturating_sub(rows)).saturating_sub(free.len());
         let mut count = wanted.least();
-        loop {
+        let mut shift = self.least_shift(found);
+        let out = loop {
             let (mut space, mut all) = match allowed {
                 0 => (Vec::new(), true),
                 _ => softened.largest(&free, (count + SPARE).min(allowed)),
@@ -227,8 +232,16 @@ impl Solver<'_> {
                 return Ok(None);
             };
             modes.truncate(count);
+            // Solutions have round-off along free motions, which a small σ magnifies.
+            let lowest = modes.first().map_or(0.0, |own| own.square);
+            if free.len() > 0 && shift < SMALL_SHIFT * FLOOR * lowest {
+                shift = FLOOR * lowest;
+                let made = (softened.factors).make(self.layout, self.model, (found, shift));
+                made.map_err(|_| AssemblyFailure::Singular)?;
+                continue;
+            }
             if all || wanted.suffice(&modes) {
-                return Ok(Some(modes));
+                break modes;
             }
             if count >= MOST_MODES {
                 return none(format!(
@@ -236,7 +249,11 @@ impl Solver<'_> {
                 ));
             }
             count = (2 * count).min(MOST_MODES);
+        };
+        if shift > self.least_shift(found) {
+            self.factorise_at(softened.factors, found)?;
         }
+        Ok(Some(out))
     }
 
     /// The modes in the space of some motions; `None` if K is not symmetric.

@@ -233,6 +233,16 @@ impl Matrices {
     }
 }
 
+/// The entries a_ii.
+pub(super) fn diagonal(matrix: &SparseMatrix<f64>) -> Vec<f64> {
+    let (starts, rows) = (matrix.pattern.column_starts(), matrix.pattern.rows());
+    let one = |j: usize| {
+        let place = (starts[j]..starts[j + 1]).find(|&k| rows[k] == j);
+        place.map_or(0.0, |k| matrix.values[k])
+    };
+    (0..matrix.pattern.order()).map(one).collect()
+}
+
 /// A x for a real matrix and a complex vector; Aᵀ x if `transposed`.
 pub(super) fn product(
     matrix: &SparseMatrix<f64>,

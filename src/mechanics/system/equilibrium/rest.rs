@@ -8,6 +8,7 @@
 
 use super::equations::State;
 use super::matrix::{Factors, RigidMetric};
+use super::pencil::{At, Matrices, diagonal};
 use super::ritz::ritz_vectors;
 use super::{KnownStarts, Solver, Sought, at_solution};
 use crate::math::slices::{add_scaled, dot};
@@ -19,6 +20,8 @@ use crate::system::failure::AssemblyFailure;
 pub(super) const FLOOR: f64 = 1e-6;
 /// A motion with a smaller stiffness, relative to the rate, is free.
 pub(super) const FREE: f64 = 1e-10;
+/// Round-off of a stiffness, relative to the largest.
+const NOISE: f64 = 1e-12;
 /// A body takes part in a free motion if it moves by this part of the largest.
 const MOVES: f64 = 0.05;
 /// Inverse iterations of a free motion.
@@ -52,7 +55,7 @@ pub fn stability(model: &Model<f64>, known: &KnownStarts) -> Result<Stability, A
 
 impl Solver<'_> {
     /// The smallest σ \[1/s²\] of factors at a solution; zero of a start.
-    fn least_shift(&self, found: &State<f64>) -> f64 {
+    pub(super) fn least_shift(&self, found: &State<f64>) -> f64 {
         FLOOR * found.rate
     }
 
@@ -209,6 +212,40 @@ impl Solver<'_> {
         }
         self.known.keep_free(&self.numbers, &free);
         Ok(free)
+    }
+
+    /// A rate \[1/s²\] of a machine that nothing loads, of the size of its softest vibration; `None` if its loads of the rate
+    /// `loaded` are more than round-off of its stiffness.
+    ///
+    /// # Errors
+    /// Singular equations.
+    pub(super) fn rate_of_stiffness(
+        &self,
+        factors: &mut Factors,
+        (placed, loaded): (&State<f64>, f64),
+    ) -> Result<Option<f64>, AssemblyFailure> {
+        let turning = self.given.turning.as_ref();
+        let matrices = Matrices::new(At::rest(self.layout, self.model, placed, turning), false);
+        let [stiff, heavy] = [&matrices.stiffness, &matrices.mass].map(diagonal);
+        let stiffest = (stiff.iter().zip(&heavy))
+            .map(|(k, m)| k / m)
+            .filter(|rate| rate.is_finite())
+            .fold(0.0, f64::max);
+        if loaded > NOISE * stiffest {
+            return Ok(None);
+        }
+        if stiffest == 0.0 {
+            return Ok(Some(1.0));
+        }
+        let mut at = placed.clone();
+        at.rate = stiffest;
+        self.factorise_at(factors, &at)?;
+        let soft = self.soft_motions(factors, &at)?.into_iter();
+        let elastic = soft
+            .map(|(rate, _)| rate)
+            .filter(|&rate| rate > NOISE * stiffest);
+        // Without soft ones all are above the least σ.
+        Ok(Some(elastic.fold(FLOOR.sqrt() * stiffest, f64::min)))
     }
 
     /// Motions y with K y = λ M̃ y on G y = 0 and their λ, those with λ below the least σ, with the factors of a solution.
