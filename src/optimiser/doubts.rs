@@ -5,51 +5,16 @@ use nalgebra::DVector;
 
 use crate::ending::FinalIterate;
 use crate::multipliers::{ScaledMultipliers, user_multipliers};
-use crate::program::{Derivatives, FAR, Point, Program};
+use crate::program::{Derivatives, Point, Program};
 use crate::status::Status;
 
-/// How often the distance of a doubtful solution from the first point is doubled. With two, three outcomes
-/// of the bed change.
-const DOUBLINGS: i32 = 6;
-
-/// A solution very far from the first point becomes [`Status::Unbounded`] if the objective falls on
-/// whenever the distance is doubled, each time by at least half of the first fall.
-fn unless_it_falls(program: &mut Program<'_>, mut finish: FinalIterate) -> FinalIterate {
-    let Some((first, _)) = program.first.clone() else {
-        return finish;
-    };
-    let mut way = &finish.point.x - &first;
-    let length = way.amax();
-    let doubtful = length > FAR * first.amax().max(1.0);
-    if !doubtful || finish.status != Status::Converged {
-        return finish;
+/// A solution very far from the first point is none if the objective falls on from there.
+fn unless_it_falls(program: &mut Program<'_>, finish: FinalIterate) -> FinalIterate {
+    let doubtful = finish.status == Status::Converged && program.goes_far(&finish.point);
+    match doubtful && program.falls_on(&finish.point).unwrap_or(false) {
+        true => finish.with_status(Status::Unbounded),
+        false => finish,
     }
-    // Only the variables that went far go on.
-    way.iter_mut()
-        .filter(|v| v.abs() <= length / FAR)
-        .for_each(|v| *v = 0.0);
-    let unit = finish.point.f.abs().max(program.scaling.objective);
-    let mut least = program.options.tolerance * unit;
-    let mut f = finish.point.f;
-    for k in 1..=DOUBLINGS {
-        let x = &finish.point.x + &way * (2.0_f64.powi(k) - 1.0);
-        let x = DVector::from_fn(x.len(), |i, _| {
-            x[i].clamp(program.lower[i], program.upper[i])
-        });
-        let Ok(next) = program.evaluate(&x) else {
-            return finish;
-        };
-        let fall = f - next.f;
-        if fall <= least || !program.is_feasible(&next.c) {
-            return finish;
-        }
-        if k == 1 {
-            least = least.max(0.5 * fall);
-        }
-        f = next.f;
-    }
-    finish.status = Status::Unbounded;
-    finish
 }
 
 /// Distance of the points near a final iterate, relative to max(1, ‖x‖∞).

@@ -29,6 +29,7 @@ mod start;
 mod state;
 mod status;
 mod trust_region;
+mod unbounded;
 mod well_posed;
 
 pub use derivatives::{DerivativeError, derivative_errors};

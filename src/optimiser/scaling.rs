@@ -116,20 +116,23 @@ impl Program<'_> {
     }
 
     /// Makes the size of a variable its own unit where that is far below the others and a function
-    /// depends on it in proportion. So variables in mixed units get the same size, and one that
+    /// depends on it in proportion, as much as on others and as it must change. So variables in mixed units get the same size, and one that
     /// happens to start near zero keeps the unit of all.
     pub(crate) fn measure_mixed(&mut self, point: &mut Point, slopes: &mut Derivatives) {
         let x = &point.x;
         let mut share = DVector::zeros(x.len());
-        let mut compare = |row: &mut dyn Iterator<Item = (usize, f64)>| {
+        let mut compare = |row: &mut dyn Iterator<Item = (usize, f64)>, violation: f64| {
             let changes: Vec<(usize, f64)> = row.map(|(k, v)| (k, (v * x[k]).abs())).collect();
-            let largest = changes.iter().fold(f64::MIN_POSITIVE, |a, c| a.max(c.1));
+            let least = violation.max(f64::MIN_POSITIVE);
+            let largest = changes.iter().fold(least, |a, c| a.max(c.1));
             for (k, change) in changes {
                 share[k] = change.max(share[k] * largest) / largest;
             }
         };
-        compare(&mut slopes.g.iter().copied().enumerate());
-        (0..self.rows.len()).for_each(|k| compare(&mut slopes.a.row(k)));
+        compare(&mut slopes.g.iter().copied().enumerate(), 0.0);
+        for k in 0..self.rows.len() {
+            compare(&mut slopes.a.row(k), self.row_violation(&point.c, k));
+        }
         let mut units = self.units();
         let size = x.amax();
         for (k, &i) in self.free.iter().enumerate() {

@@ -136,6 +136,9 @@ impl InteriorPoint {
             if let Some(ending) = self.ending(program) {
                 return Ok(ending);
             }
+            if program.goes_far(&self.at.point) && program.falls_on(&self.at.point)? {
+                return Ok(Status::Unbounded);
+            }
             // a new barrier parameter begins with an empty filter.
             let curvature = program.curvature(&self.at.point.x, &self.at.y)?;
             self.b.set_exact(curvature);

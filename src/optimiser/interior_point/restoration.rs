@@ -2,6 +2,7 @@
 
 use nalgebra::DVector;
 
+use crate::doubts::degenerate_row;
 use crate::interior_point::iterate::Layout;
 use crate::interior_point::iteration::InteriorPoint;
 use crate::interior_point::line_search::infeasibility;
@@ -38,6 +39,11 @@ impl InteriorPoint {
         if self.short_steps == 2 {
             self.b.reset();
             self.doubt_gradients(program)?;
+            let z = self.multipliers(program);
+            if let Some(j) = degenerate_row(program, &self.at.point, &self.at.slopes, &z) {
+                let constraint = program.constraint_name(j);
+                return Ok(Some(Status::Degenerate { constraint }));
+            }
         }
         let theta = self.theta();
         if self.short_steps == 4 {

@@ -14,10 +14,6 @@ use crate::state::SavedState;
 /// Least relative distance of the start of a resumed run from a bound: so near that it stays where it was.
 pub(crate) const RESUMED_PUSH: f64 = 1e-10;
 
-/// Larger multipliers may hide finite ones at the same point, which are fitted then. Without this,
-/// one claim of the bed is false.
-const LARGEST_MULTIPLIER: f64 = 1e20;
-
 pub(crate) fn interior_point(
     program: &mut Program<'_>,
     point: Point,
@@ -41,8 +37,10 @@ fn finish_interior_point(program: &mut Program<'_>, mut method: InteriorPoint) -
     let status = method.run(program);
     let mut multipliers = method.multipliers(program);
     let mut scaled = method.optimality();
-    let parts = [&multipliers.y, &multipliers.zl, &multipliers.zu];
-    if parts.iter().any(|z| z.amax() > LARGEST_MULTIPLIER) {
+    // The forces of dependent rows and bounds may balance each other at any size. Where their rounding
+    // exceeds the tolerance, finite ones at the same point are fitted.
+    let balanced = multipliers.zl.amax().max(multipliers.zu.amax());
+    if f64::EPSILON * balanced > program.options.tolerance * method.at.slopes.g.amax() {
         let (point, slopes) = (&method.at.point, &method.at.slopes);
         let zero = DVector::zeros(point.c.len());
         multipliers = ScaledMultipliers::polished(program, point, slopes, &zero);

@@ -110,7 +110,10 @@ impl TrustRegion {
         let mut lost = 0;
         let mut failed = 0;
         loop {
-            if self.goal == Goal::Optimum && program.is_unbounded(&self.point) {
+            if self.goal == Goal::Optimum
+                && (program.is_unbounded(&self.point)
+                    || program.goes_far(&self.point) && program.falls_on(&self.point)?)
+            {
                 return Ok(Status::Unbounded);
             }
             let Some(model) = self.solve_model(program) else {
