@@ -2,13 +2,11 @@
 
 use nalgebra::DVector;
 
+use crate::constants::HALF_OF_DIGITS;
 use crate::program::{Derivatives, Program};
 
 /// Largest violation of a row relative to its size, whatever the tolerance.
 const PART_OF_ROW: f64 = 1e-4;
-
-/// Least size of a row relative to the largest size that it had.
-const LEAST_SIZE: f64 = 1e-8;
 
 impl Program<'_> {
     /// Largest violation of a row, in the units of the user, and the row's index there.
@@ -95,7 +93,7 @@ impl Program<'_> {
             self.row_changes[j] = change_by_sizes;
             let largest = &mut self.largest_rows[j];
             *largest = largest.max(size);
-            self.row_sizes[j] = size.max(LEAST_SIZE * *largest).max(f64::MIN_POSITIVE);
+            self.row_sizes[j] = size.max(HALF_OF_DIGITS * *largest).max(f64::MIN_POSITIVE);
         }
     }
 

@@ -5,27 +5,21 @@ use std::time::Instant;
 
 use nalgebra::DVector;
 
+use crate::constants::FAR;
 use crate::evaluations::unless_panicked;
 use crate::linear::curvature::Curvature;
 use crate::program::{Derivatives, EarlyExit, Point, Program};
 use crate::state::Scaling;
 use crate::status::Status;
 
-/// Largest factor of a function. A gradient that is smaller by this factor is rounding. Without
-/// a limit two problems of the bed are lost, whose least value is zero.
+/// Largest factor of a function. A gradient that is smaller by this factor is rounding. A thousandfold
+/// limit makes far starts end at the limit of evaluations.
 const LARGEST_LIFT: f64 = 1e12;
 
 /// A restart keeps the units of the variables if the size of the point is between these. Always to
-/// change them costs one problem of the bed; never to, far starts in the tests.
+/// change them costs one problem of the bed; never to, far starts in the tests. A start below the first part of
+/// the largest may be in another unit: without that, variables in units from 1e-6 to 1e6 stall.
 const NEAR_ONE: RangeInclusive<f64> = 1e-3..=1e3;
-
-/// A row whose violation exceeds its gradient by this factor is flat: steps of so many sizes of the
-/// start would lead nowhere. Without this a plateau is left only at the limit of evaluations.
-const FLAT_ROW: f64 = 1e4;
-
-/// A start below this part of the largest may be in another unit. Without this, variables in units from
-/// 1e-6 to 1e6 stall.
-const MIXED: f64 = 1e-3;
 
 /// Number of largest gradients of a run that are ignored: those of a start on a cliff. With none the bed
 /// takes 4 % less, and such a start loosens the conditions.
@@ -57,7 +51,7 @@ impl Program<'_> {
         units.objective = factor(wanted, slopes.g.amax() / self.scaling.objective);
         for (k, &j) in self.rows.iter().enumerate() {
             let violation = self.row_violation(&point.c, k);
-            let norm = slopes.a.row_amax(k).max(violation / FLAT_ROW);
+            let norm = slopes.a.row_amax(k).max(violation / FAR);
             let norm = norm / self.scaling.constraints[j];
             let bounds = [self.user_row_lower[j], self.user_row_upper[j]];
             units.constraints[j] = if bounds[0] < bounds[1] {
@@ -137,7 +131,7 @@ impl Program<'_> {
         let size = x.amax();
         for (k, &i) in self.free.iter().enumerate() {
             let part = x[k].abs() / size;
-            if part < MIXED && share[k] > MIXED.sqrt() {
+            if part < *NEAR_ONE.start() && share[k] > NEAR_ONE.start().sqrt() {
                 units.variables[i] *= part;
             }
         }

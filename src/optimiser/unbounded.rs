@@ -2,31 +2,20 @@
 
 use nalgebra::DVector;
 
+use crate::constants::{FAR, MOST_STEPS};
 use crate::linear::jacobian::Jacobian;
 use crate::linear::kkt_sparse::SparseKkt;
 use crate::program::{EarlyExit, Point, Program};
 
-/// Distance from the first point, relative to its size. Beyond it a fall in scaled units shows an
-/// unbounded objective, and the way there is followed: without that, claims of the bed are false.
-const FAR: f64 = 1e4;
-
-/// Steps of Newton to the rows from a point ten times as far. An exponential row takes ten.
-const MOST_STEPS: usize = 20;
-
 impl Program<'_> {
-    /// Whether the objective has fallen without bound from the first point to a feasible one: in
-    /// the units of the user or, very far from the first point, in scaled units if those are
-    /// smaller.
+    /// Whether the objective has fallen from the first point to a feasible one by more than any number
+    /// that makes sense. A run that goes far is judged sooner ([`Program::falls_on`]).
     pub(crate) fn is_unbounded(&self, point: &Point) -> bool {
-        let Some((x, f)) = &self.first else {
+        let Some((_, f)) = &self.first else {
             return false;
         };
         let fall = point.f / self.scaling.objective - f;
-        let is_far = (&point.x - x).amax() > FAR * x.amax().max(1.0);
-        let limit = self.options.unbounded_below;
-        let smallest = fall * self.scaling.objective;
-        (fall < limit * f.abs().max(1.0) || is_far && smallest < limit)
-            && self.is_feasible(&point.c)
+        fall < self.options.unbounded_below * f.abs().max(1.0) && self.is_feasible(&point.c)
     }
 
     /// Whether a point of the run that satisfies the rows is so far from the first one that its way should be
