@@ -59,7 +59,9 @@ pub(crate) fn kkt(
     for (i, &user) in program.free.iter().enumerate() {
         let unit = program.unit_of_force(user);
         let residual = slopes.g[i] + force[i] - z.zl[i] + z.zu[i];
-        stationarity = stationarity.max(residual.abs() / unit);
+        // Forces of any size may balance each other, but for their rounding.
+        let rounding = f64::EPSILON * (force[i].abs() + z.zl[i] + z.zu[i]);
+        stationarity = stationarity.max((residual.abs() + rounding) / unit);
         let mut product = |multiplier: f64, distance: f64| {
             if multiplier > 0.0 {
                 complementarity += multiplier * distance.max(0.0) / unit_f;

@@ -11,7 +11,6 @@ use crate::options::Method;
 use crate::program::{Derivatives, Point, Program};
 use crate::renewal::renewed;
 use crate::state::SavedState;
-use crate::status::Status;
 
 pub(crate) fn interior_point(
     program: &mut Program<'_>,
@@ -33,12 +32,12 @@ pub(crate) fn interior_point(
 }
 
 fn finish_interior_point(program: &mut Program<'_>, mut method: InteriorPoint) -> FinalIterate {
-    let mut status = method.run(program);
+    let status = method.run(program);
     let mut multipliers = method.multipliers(program);
     let mut scaled = method.optimality();
     let (point, slopes) = (&method.at.point, &method.at.slopes);
     // The forces of dependent rows and bounds may balance each other at any size. Where their rounding
-    // exceeds the tolerance, finite ones at the same point are fitted, or nothing is claimed.
+    // exceeds the tolerance, none may do as well.
     let balanced = multipliers.zl.amax().max(multipliers.zu.amax());
     if f64::EPSILON * balanced > program.options.tolerance * slopes.g.amax() {
         let zero = DVector::zeros(point.c.len());
@@ -46,8 +45,6 @@ fn finish_interior_point(program: &mut Program<'_>, mut method: InteriorPoint) -
         let residual = scaled_residual(program, point, slopes, &fitted);
         if is_solved(program, point, slopes, &fitted, residual) {
             (multipliers, scaled) = (fitted, residual);
-        } else if status == Status::Converged {
-            status = Status::Stalled;
         }
     }
     FinalIterate {
