@@ -1,5 +1,5 @@
-//! Numbers that several rules share. Ten times more or less of any of the first three changes no
-//! outcome of the bed in any of its places.
+//! Numbers that several rules share. In any one place of the interior point, a thousand times more or
+//! less of the first two loses no problem of the bed.
 
 /// What is smaller than this part of a number is lost in half of its digits: about √ε.
 pub(crate) const HALF_OF_DIGITS: f64 = 1e-8;
@@ -23,7 +23,8 @@ pub(crate) const SUCCESSIVE: usize = 5;
 pub(crate) const MOST_STEPS: usize = 20;
 
 /// Distance from the first point, relative to its size, that is far: the way there is followed.
-/// Without that, eight claims of the bed are false. Steps of so many sizes lead nowhere: a row so flat is scaled by its violation.
+/// Without that, three claims of the bed are false. Steps of so many sizes lead nowhere: a row so flat
+/// is scaled by its violation.
 pub(crate) const FAR: f64 = 1e4;
 
 /// Steps of the differences that test derivatives, relative to max(1, |x|).
