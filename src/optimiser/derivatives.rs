@@ -1,5 +1,6 @@
 //! The derivatives of a program, compared with differences of its values.
 
+use crate::constants::STEPS;
 use crate::nlp::{Evaluation, EvaluationFailure, Nlp};
 
 /// The worst derivative of one function.
@@ -16,9 +17,6 @@ pub struct DerivativeError {
     /// Their distance, relative to the largest derivative of this function.
     pub relative: f64,
 }
-
-/// Steps of the differences, relative to max(1, |x|).
-const STEPS: [f64; 3] = [1e-4, 1e-5, 1e-6];
 
 /// Compares the derivatives of `nlp` at `x` with central differences. Returns the worst one of the
 /// objective and of each row, the objective first. Of three steps the one counts that agrees best.

@@ -3,67 +3,24 @@
 
 use nalgebra::DVector;
 
+use crate::constants::STEPS;
 use crate::ending::FinalIterate;
 use crate::multipliers::{ScaledMultipliers, user_multipliers};
-use crate::program::{Derivatives, FAR, Point, Program};
+use crate::program::{Derivatives, Point, Program};
 use crate::status::Status;
 
-/// How often the distance of a doubtful solution from the first point is doubled. With two, three outcomes
-/// of the bed change.
-const DOUBLINGS: i32 = 6;
-
-/// A solution very far from the first point becomes [`Status::Unbounded`] if the objective falls on
-/// whenever the distance is doubled, each time by at least half of the first fall.
-fn unless_it_falls(program: &mut Program<'_>, mut finish: FinalIterate) -> FinalIterate {
-    let Some((first, _)) = program.first.clone() else {
-        return finish;
-    };
-    let mut way = &finish.point.x - &first;
-    let length = way.amax();
-    let doubtful = length > FAR * first.amax().max(1.0);
-    if !doubtful || finish.status != Status::Converged {
-        return finish;
+/// A solution very far from the first point is none if the objective falls on from there.
+fn unless_it_falls(program: &mut Program<'_>, finish: FinalIterate) -> FinalIterate {
+    let doubtful = finish.status == Status::Converged && program.goes_far(&finish.point);
+    match doubtful && program.falls_on(&finish.point).unwrap_or(false) {
+        true => finish.with_status(Status::Unbounded),
+        false => finish,
     }
-    // Only the variables that went far go on.
-    way.iter_mut()
-        .filter(|v| v.abs() <= length / FAR)
-        .for_each(|v| *v = 0.0);
-    let unit = finish.point.f.abs().max(program.scaling.objective);
-    let mut least = program.options.tolerance * unit;
-    let mut f = finish.point.f;
-    for k in 1..=DOUBLINGS {
-        let x = &finish.point.x + &way * (2.0_f64.powi(k) - 1.0);
-        let x = DVector::from_fn(x.len(), |i, _| {
-            x[i].clamp(program.lower[i], program.upper[i])
-        });
-        let Ok(next) = program.evaluate(&x) else {
-            return finish;
-        };
-        let fall = f - next.f;
-        if fall <= least || !program.is_feasible(&next.c) {
-            return finish;
-        }
-        if k == 1 {
-            least = least.max(0.5 * fall);
-        }
-        f = next.f;
-    }
-    finish.status = Status::Unbounded;
-    finish
 }
 
-/// Distance of the points near a final iterate, relative to max(1, ‖x‖∞).
-const NEARBY: f64 = 1e-6;
-
-/// Share of a derivative by which it must differ from a difference to be doubted.
-const DOUBTED: f64 = 0.5;
-
-/// Change of the objective by a violation within the tolerance, relative to |f| or its unit, from
-/// which the multiplier of a row counts as huge.
-const HUGE: f64 = 1e-3;
-
-/// The row without which no multipliers exist: its multiplier is huge, and its derivative changes
-/// by its own size within the allowed violation. Then the derivative vanishes where the row holds,
+/// The row without which no multipliers exist: its multiplier is huge (a violation within the tolerance
+/// changes the objective by more than the root of the tolerance), and its derivative changes by a part of
+/// itself within the allowed violation. Then the derivative vanishes where the row holds,
 /// as that of x² = 0 does at x = 0.
 pub(crate) fn degenerate_row(
     program: &mut Program<'_>,
@@ -77,12 +34,13 @@ pub(crate) fn degenerate_row(
     let k = rows.max_by(|a, b| steep(a).total_cmp(&steep(b)))?;
     let f = (point.f / program.scaling.objective).abs();
     let f = f.max(program.unit_of_objective());
-    if steep(&k) * program.options.constraint_tolerance <= HUGE * f {
+    if steep(&k) * program.options.constraint_tolerance <= program.options.tolerance.sqrt() * f {
         return None;
     }
     let x = &point.x;
     let steepness: f64 = slopes.a.row(k).map(|(_, v)| v.abs()).sum();
-    let length = (NEARBY * x.amax().max(1.0)).min(program.allowed(k) / steepness);
+    let length =
+        (program.options.tolerance * x.amax().max(1.0)).min(program.allowed(k) / steepness);
     let along = |length: f64| {
         let mut moved = x.clone();
         for (i, slope) in slopes.a.row(k) {
@@ -97,7 +55,7 @@ pub(crate) fn degenerate_row(
     let trial = program.evaluate(&moved).ok()?;
     let change = trial.c[k] - point.c[k];
     let rounding = 10.0 * f64::EPSILON * trial.c[k].abs().max(point.c[k].abs());
-    let bent = (change - expected).abs() > DOUBTED * expected.abs() + rounding;
+    let bent = (change - expected).abs() > AGREE * expected.abs() + rounding;
     bent.then_some(program.rows[k])
 }
 
@@ -115,15 +73,8 @@ fn unless_multipliers_fail(program: &mut Program<'_>, mut finish: FinalIterate) 
     finish
 }
 
-/// Steps of the differences that test derivatives, relative to max(1, ‖x‖∞).
-const STEPS: [f64; 2] = [1e-4, 1e-5];
-
 /// Differences by different steps agree to this share of their distance to the derivative.
 const AGREE: f64 = 0.1;
-
-/// Least error of a slope relative to the function's gradient. At a stationary point slopes vanish but for
-/// what convergence and rounding leave, and so does their ratio.
-const OF_GRADIENT: f64 = 1e-3;
 
 /// A run without a solution becomes [`Status::Inconsistent`] if its gradients are wrong. A run at a
 /// limit is not tested: with a higher limit it must go on as if it had not ended.
@@ -150,6 +101,8 @@ pub(crate) fn wrong_gradients(
     slopes: &Derivatives,
 ) -> Option<String> {
     let size = at.x.amax().max(1.0);
+    // At a stationary point slopes vanish but for what convergence and rounding leave, and so does their ratio.
+    let least_part = program.options.tolerance.sqrt();
     let direction = DVector::from_fn(at.x.len(), |i, _| {
         let room = (at.x[i] - program.lower[i]).min(program.upper[i] - at.x[i]);
         // Weyl sequence: no derivative has a zero share.
@@ -161,7 +114,7 @@ pub(crate) fn wrong_gradients(
         }
     });
     let mut differences: Vec<[Point; 2]> = Vec::new();
-    for step in STEPS {
+    for step in &STEPS[..2] {
         let length = step * size;
         let ahead = program.evaluate(&(&at.x + &direction * length));
         let behind = program.evaluate(&(&at.x - &direction * length));
@@ -181,7 +134,7 @@ pub(crate) fn wrong_gradients(
         let ((coarse, coarse_bend), (fine, fine_bend)) = (difference(0), difference(1));
         let gap = (fine - slope).abs();
         let rounding = 1e3 * f64::EPSILON * here.abs().max(of) / (STEPS[1] * size);
-        let least = (AGREE * fine.abs().max(slope.abs())).max(OF_GRADIENT * gradient);
+        let least = (AGREE * fine.abs().max(slope.abs())).max(least_part * gradient);
         let wrong = gap > least && gap > rounding;
         let smooth = fine_bend <= 0.5 * coarse_bend + rounding;
         (wrong && smooth && (coarse - fine).abs() <= AGREE * gap).then_some(fine)
@@ -215,6 +168,10 @@ pub(crate) fn wrong_gradients(
 
 /// The final iterate after all checks.
 pub(crate) fn doubted(program: &mut Program<'_>, finish: FinalIterate) -> FinalIterate {
+    // A claim is tested even where the run used all of its evaluations.
+    if finish.status == Status::Converged {
+        program.set_budget(1.0, f64::INFINITY);
+    }
     let finish = unless_it_falls(program, finish);
     let finish = unless_multipliers_fail(program, finish);
     unless_gradients_are_wrong(program, finish)

@@ -36,7 +36,12 @@ impl FinalIterate {
         let (point, slopes, z) = (&self.point, &self.slopes, &self.multipliers);
         let solved = is_solved(program, point, slopes, z, self.scaled);
         match self.status {
-            Status::Stalled | Status::IterationLimit | Status::EvaluationLimit if solved => {
+            Status::Stalled
+            | Status::Degenerate { .. }
+            | Status::IterationLimit
+            | Status::EvaluationLimit
+                if solved =>
+            {
                 self.status = Status::Converged;
             }
             Status::Converged if !solved => self.status = Status::Stalled,

@@ -2,13 +2,11 @@
 
 use nalgebra::DVector;
 
+use crate::constants::HALF_OF_DIGITS;
 use crate::program::{Derivatives, Program};
 
 /// Largest violation of a row relative to its size, whatever the tolerance.
 const PART_OF_ROW: f64 = 1e-4;
-
-/// Least size of a row relative to the largest size that it had.
-const LEAST_SIZE: f64 = 1e-8;
 
 impl Program<'_> {
     /// Largest violation of a row, in the units of the user, and the row's index there.
@@ -83,12 +81,19 @@ impl Program<'_> {
         for (k, &j) in self.rows.iter().enumerate() {
             let size = |bound: f64| if bound.is_finite() { bound.abs() } else { 0.0 };
             let bound = size(self.user_row_lower[j]).max(size(self.user_row_upper[j]));
-            let by = |i: usize| if bound > 0.0 { x[i].abs() } else { largest_x };
-            let change: f64 = slopes.a.row(k).map(|(i, v)| v.abs() * by(i)).sum();
-            let size = bound.max(change / self.scaling.constraints[j]);
+            let change = |by: &dyn Fn(usize) -> f64| {
+                let changes = slopes.a.row(k).map(|(i, v)| v.abs() * by(i));
+                changes.sum::<f64>() / self.scaling.constraints[j]
+            };
+            let change_by_sizes = change(&|i| x[i].abs());
+            let size = match bound > 0.0 {
+                true => bound.max(change_by_sizes),
+                false => change(&|_| largest_x),
+            };
+            self.row_changes[j] = change_by_sizes;
             let largest = &mut self.largest_rows[j];
             *largest = largest.max(size);
-            self.row_sizes[j] = size.max(LEAST_SIZE * *largest).max(f64::MIN_POSITIVE);
+            self.row_sizes[j] = size.max(HALF_OF_DIGITS * *largest).max(f64::MIN_POSITIVE);
         }
     }
 

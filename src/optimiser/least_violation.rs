@@ -2,21 +2,13 @@
 
 use nalgebra::{DMatrix, DVector};
 
+use crate::constants::SMALL_PART;
 use crate::linear::jacobian::Jacobian;
 use crate::linear::quasi_newton::Spectrum;
 use crate::observer::Phase;
 use crate::program::{Derivatives, EarlyExit, Point, Program, Progress};
 use crate::quadratic::data::{Hessian, QpData};
 use crate::quadratic::elastic::ElasticQp;
-
-/// A step is tried only if it promises this part of the violation. Ten times more or less changes one
-/// outcome of the bed.
-const WORTHWHILE: f64 = 1e-6;
-/// Curvature of the subproblem, relative to violation and radius. It makes the step unique, and
-/// does not decide.
-const CURVATURE: f64 = 1e-6;
-/// Penalty of a row that a subproblem violates, relative to the largest multiplier it can have.
-const PENALTY: f64 = 10.0;
 
 /// The one-sided rows of a program: row, side (1 above, −1 below), and the unit of its violation.
 struct Sides(Vec<(usize, f64, f64)>);
@@ -70,7 +62,7 @@ pub(crate) fn least_violation(
             break;
         };
         let gain = worst - promised;
-        if gain <= WORTHWHILE * worst {
+        if gain <= SMALL_PART * worst {
             least = true;
             break;
         }
@@ -147,7 +139,8 @@ fn step(
         i if i < n => (program.upper[i] - point.x[i]).clamp(0.0, radius),
         _ => radius,
     });
-    let sigma = CURVATURE * worst / (radius * radius);
+    // It makes the step unique, and does not decide.
+    let sigma = SMALL_PART * worst / (radius * radius);
     let dense = n <= program.options.dense_subproblems();
     let diagonal;
     let b = if dense {
@@ -166,7 +159,8 @@ fn step(
         a: &a,
         above: &above,
         below: &infinite,
-        penalty: &DVector::from_element(m, PENALTY),
+        // No multiplier exceeds one: the forces on t balance.
+        penalty: &DVector::from_element(m, 2.0),
         lower: &lower,
         upper: &upper,
     };

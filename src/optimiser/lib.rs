@@ -3,6 +3,7 @@
 //! `solve` starts a run, chooses the method and reports the result. `convergence` says when a run
 //! has converged, `ending` how it ended. Each method has a folder.
 
+mod constants;
 mod convergence;
 mod derivatives;
 mod doubts;
@@ -29,6 +30,7 @@ mod start;
 mod state;
 mod status;
 mod trust_region;
+mod unbounded;
 mod well_posed;
 
 pub use derivatives::{DerivativeError, derivative_errors};

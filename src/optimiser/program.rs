@@ -13,10 +13,6 @@ use crate::outcome::{Counts, FailedDesign};
 use crate::state::Scaling;
 use crate::status::Status;
 
-/// Distance from the first point, relative to its size. Beyond it a fall in scaled units shows an
-/// unbounded objective, and a solution is doubted: without that, three claims of the bed are false.
-pub(crate) const FAR: f64 = 1e4;
-
 /// Values of the scaled functions at a scaled point.
 #[derive(Clone, Debug)]
 pub(crate) struct Point {
@@ -123,10 +119,14 @@ pub(crate) struct Program<'a> {
     /// Sizes of the rows at the newest derivatives, in the units of the user.
     pub(crate) row_sizes: Vec<f64>,
     pub(crate) largest_rows: Vec<f64>,
+    /// Σ |∂c/∂x_i x_i| of the rows there, in the same units.
+    pub(crate) row_changes: Vec<f64>,
     /// Iterations and evaluations allowed to the running method.
     pub(super) allowed: Allowed,
     /// First point reported, and its objective in the units of the user.
     pub(crate) first: Option<(DVector<f64>, f64)>,
+    /// Distance from the first point, relative to its size, up to which the way was followed.
+    pub(crate) followed: f64,
     /// Best point reported: feasible with the least objective, or least infeasible.
     pub best: Option<Point>,
     /// How a method ended whose end another one replaces, or could not.
@@ -203,11 +203,13 @@ impl<'a> Program<'a> {
             gradient_norms: Vec::new(),
             row_sizes: vec![f64::INFINITY; m],
             largest_rows: vec![0.0; m],
+            row_changes: vec![0.0; m],
             allowed: Allowed {
                 iterations: options.max_iterations,
                 evaluations: options.max_evaluations,
             },
             first: None,
+            followed: 1.0,
             best: None,
             other: None,
         }
@@ -252,21 +254,6 @@ impl<'a> Program<'a> {
             iterations: part(iterations, self.options.max_iterations),
             evaluations: part(evaluations, self.options.max_evaluations),
         };
-    }
-
-    /// Whether the objective has fallen without bound from the first point to a feasible one: in
-    /// the units of the user or, very far from the first point, in scaled units if those are
-    /// smaller.
-    pub(crate) fn is_unbounded(&self, point: &Point) -> bool {
-        let Some((x, f)) = &self.first else {
-            return false;
-        };
-        let fall = point.f / self.scaling.objective - f;
-        let is_far = (&point.x - x).amax() > FAR * x.amax().max(1.0);
-        let limit = self.options.unbounded_below;
-        let smallest = fall * self.scaling.objective;
-        (fall < limit * f.abs().max(1.0) || is_far && smallest < limit)
-            && self.is_feasible(&point.c)
     }
 
     /// Name of constraint `j` of the user.

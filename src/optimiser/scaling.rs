@@ -5,27 +5,21 @@ use std::time::Instant;
 
 use nalgebra::DVector;
 
+use crate::constants::FAR;
 use crate::evaluations::unless_panicked;
 use crate::linear::curvature::Curvature;
 use crate::program::{Derivatives, EarlyExit, Point, Program};
 use crate::state::Scaling;
 use crate::status::Status;
 
-/// Largest factor of a function. A gradient that is smaller by this factor is rounding. Without
-/// a limit two problems of the bed are lost, whose least value is zero.
+/// Largest factor of a function. A gradient that is smaller by this factor is rounding. A thousandfold
+/// limit makes far starts end at the limit of evaluations.
 const LARGEST_LIFT: f64 = 1e12;
 
 /// A restart keeps the units of the variables if the size of the point is between these. Always to
-/// change them costs one problem of the bed; never to, far starts in the tests.
+/// change them costs one problem of the bed; never to, far starts in the tests. A start below the first part of
+/// the largest may be in another unit: without that, variables in units from 1e-6 to 1e6 stall.
 const NEAR_ONE: RangeInclusive<f64> = 1e-3..=1e3;
-
-/// A row whose violation exceeds its gradient by this factor is flat: steps of so many sizes of the
-/// start would lead nowhere. Without this a plateau is left only at the limit of evaluations.
-const FLAT_ROW: f64 = 1e4;
-
-/// A start below this part of the largest may be in another unit. Without this, variables in units from
-/// 1e-6 to 1e6 stall.
-const MIXED: f64 = 1e-3;
 
 /// Number of largest gradients of a run that are ignored: those of a start on a cliff. With none the bed
 /// takes 4 % less, and such a start loosens the conditions.
@@ -57,7 +51,7 @@ impl Program<'_> {
         units.objective = factor(wanted, slopes.g.amax() / self.scaling.objective);
         for (k, &j) in self.rows.iter().enumerate() {
             let violation = self.row_violation(&point.c, k);
-            let norm = slopes.a.row_amax(k).max(violation / FLAT_ROW);
+            let norm = slopes.a.row_amax(k).max(violation / FAR);
             let norm = norm / self.scaling.constraints[j];
             let bounds = [self.user_row_lower[j], self.user_row_upper[j]];
             units.constraints[j] = if bounds[0] < bounds[1] {
@@ -116,25 +110,28 @@ impl Program<'_> {
     }
 
     /// Makes the size of a variable its own unit where that is far below the others and a function
-    /// depends on it in proportion. So variables in mixed units get the same size, and one that
+    /// depends on it in proportion, as much as on others and as it must change. So variables in mixed units get the same size, and one that
     /// happens to start near zero keeps the unit of all.
     pub(crate) fn measure_mixed(&mut self, point: &mut Point, slopes: &mut Derivatives) {
         let x = &point.x;
         let mut share = DVector::zeros(x.len());
-        let mut compare = |row: &mut dyn Iterator<Item = (usize, f64)>| {
+        let mut compare = |row: &mut dyn Iterator<Item = (usize, f64)>, violation: f64| {
             let changes: Vec<(usize, f64)> = row.map(|(k, v)| (k, (v * x[k]).abs())).collect();
-            let largest = changes.iter().fold(f64::MIN_POSITIVE, |a, c| a.max(c.1));
+            let least = violation.max(f64::MIN_POSITIVE);
+            let largest = changes.iter().fold(least, |a, c| a.max(c.1));
             for (k, change) in changes {
                 share[k] = change.max(share[k] * largest) / largest;
             }
         };
-        compare(&mut slopes.g.iter().copied().enumerate());
-        (0..self.rows.len()).for_each(|k| compare(&mut slopes.a.row(k)));
+        compare(&mut slopes.g.iter().copied().enumerate(), 0.0);
+        for k in 0..self.rows.len() {
+            compare(&mut slopes.a.row(k), self.row_violation(&point.c, k));
+        }
         let mut units = self.units();
         let size = x.amax();
         for (k, &i) in self.free.iter().enumerate() {
             let part = x[k].abs() / size;
-            if part < MIXED && share[k] > MIXED.sqrt() {
+            if part < *NEAR_ONE.start() && share[k] > NEAR_ONE.start().sqrt() {
                 units.variables[i] *= part;
             }
         }

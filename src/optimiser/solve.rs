@@ -2,10 +2,11 @@
 
 use nalgebra::DVector;
 
+use crate::constants::HALF_OF_DIGITS;
 use crate::convergence::scaled_residual;
 use crate::doubts::{doubted, wrong_gradients};
 use crate::ending::{FinalIterate, best_of, unfinished, without_freedom};
-use crate::interior_point::run::{RESUMED_PUSH, interior_point};
+use crate::interior_point::run::interior_point;
 use crate::least_violation::least_violation;
 use crate::multipliers::ScaledMultipliers;
 use crate::nlp::Nlp;
@@ -20,11 +21,10 @@ use crate::status::Status;
 use crate::trust_region::run::trust_region;
 use crate::well_posed;
 
-/// Shares of iterations and evaluations after which [`Method::Auto`] changes from the interior point
+/// Share of iterations, and half as much of evaluations, after which [`Method::Auto`] changes from the interior point
 /// to the trust region. A run that needs as much is likely to need all, and one with three
 /// evaluations an iteration crawls.
-const FIRST_ITERATIONS: f64 = 0.7;
-const FIRST_EVALUATIONS: f64 = 0.35;
+const FIRST_SHARE: f64 = 0.7;
 
 /// Minimises f(x) subject to c_L ≤ c(x) ≤ c_U and x_L ≤ x ≤ x_U.
 ///
@@ -102,7 +102,8 @@ fn run(
         program.measure_start();
     }
     let push = if saved.is_some() {
-        RESUMED_PUSH
+        // So near a bound that the start stays where it was.
+        HALF_OF_DIGITS
     } else {
         options.bound_push
     };
@@ -173,7 +174,7 @@ fn attempt(
         Method::InteriorPoint | Method::Auto => interior_point(program, point, slopes, saved, push),
     };
     let mut finish = run(program, first, saved);
-    if saved.is_none() && program.counts.iterations == 0 && finish.status == Status::Converged {
+    if saved.is_none() && program.counts.iterations <= 1 && finish.status == Status::Converged {
         finish = match left_start(program, &finish.point) {
             Some(next) => run(program, next, None),
             None => finish,
@@ -247,7 +248,7 @@ fn auto(
     saved: Option<&SavedState>,
     push: f64,
 ) -> FinalIterate {
-    program.set_budget(FIRST_ITERATIONS, FIRST_EVALUATIONS);
+    program.set_budget(FIRST_SHARE, 0.5 * FIRST_SHARE);
     let (start, units) = (first.clone(), program.units());
     let mut kept = attempt(program, Method::InteriorPoint, first, saved, push);
     program.set_budget(1.0, 1.0);

@@ -2,6 +2,7 @@
 
 use nalgebra::DVector;
 
+use crate::constants::SMALL_PART;
 use crate::interior_point::iterate::margin;
 use crate::nlp::EvaluationFailure;
 use crate::options::Method;
@@ -10,13 +11,6 @@ use crate::program::{Derivatives, EarlyExit, Point, Program};
 /// Distances of the points tried near one that seems infeasible or at which the functions are
 /// undefined, relative to the size of the point if there are no bounds.
 const REACHES: [f64; 7] = [0.2, 1.0, 5.0, 0.5, 50.0, 500.0, 1e-3];
-
-/// A nearby violation is unchanged if it differs by less than this part.
-const UNCHANGED: f64 = 1e-6;
-
-/// Distance, relative to the size of a start, at which a start that seems solved is doubted. Without this, a
-/// maximum is called solved.
-const ASIDE: f64 = 1e-2;
 
 /// Evaluates the start, moved into the interior of the bounds, or points near it.
 pub(crate) fn first_point(
@@ -79,13 +73,13 @@ pub(crate) fn look_around(
             Err(halt) => return Err(halt),
         };
         let change = program.total_violation(&point.c) - now;
-        if change < -UNCHANGED * now {
+        if change < -SMALL_PART * now {
             let slopes = program.gradients(&x)?;
             return Ok(Neighbourhood::Less(Box::new((point, slopes))));
         }
         largest = largest.max(change.abs());
     }
-    Ok(if largest <= UNCHANGED * now {
+    Ok(if largest <= SMALL_PART * now {
         Neighbourhood::Flat
     } else {
         Neighbourhood::More
@@ -98,7 +92,7 @@ pub(crate) fn left_start(program: &mut Program<'_>, at: &Point) -> Option<(Point
     let push = program.options.bound_push;
     let lost = program.options.tolerance * at.f.abs();
     for trial in 1..=2 {
-        let x = perturbed(program, &at.x, trial, push, ASIDE);
+        let x = perturbed(program, &at.x, trial, push, push);
         let point = program.evaluate(&x).ok()?;
         if point.f < at.f - lost && program.is_feasible(&point.c) {
             let slopes = program.gradients(&x).ok()?;

@@ -2,11 +2,8 @@
 
 use serde::{Deserialize, Serialize};
 
+use crate::constants::SMALL_PART;
 use crate::linear::quasi_newton::QuasiNewton;
-
-/// Two values of one objective at almost the same point differ by less than this, relatively. Ten times
-/// more or less is the same.
-const SAME: f64 = 1e-6;
 
 /// Lagrange multipliers in the units of the user.
 ///
@@ -119,6 +116,6 @@ impl SavedState {
 
     /// Whether `objective`, the value at this state's point, agrees with the stored one.
     pub(crate) fn is_of(&self, objective: f64) -> bool {
-        (objective - self.objective).abs() <= SAME * objective.abs().max(self.objective.abs())
+        (objective - self.objective).abs() <= SMALL_PART * objective.abs().max(self.objective.abs())
     }
 }

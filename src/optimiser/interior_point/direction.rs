@@ -2,12 +2,10 @@
 
 use nalgebra::DVector;
 
+use crate::constants::HALF_OF_DIGITS;
 use crate::interior_point::iterate::{Iterate, Layout};
 use crate::linear::kkt_system::KktSystem;
 use crate::linear::quasi_newton::QuasiNewton;
-
-/// Largest Σ of a slack that counts as far from its bounds. Slacks by their force alone cost 1 to 2 %.
-const FAR: f64 = 1e-8;
 
 /// An entry overshoots its bound if this share of its step reaches the bound. It then gets a
 /// stiffness with which its step ends at the share `REACH` of its distance. Without stiffening the
@@ -83,7 +81,7 @@ impl NewtonSystem {
         let moved = a * &x;
         let slack = |(k, &j): (usize, &usize)| {
             let sigma = self.sigma[n + k];
-            if sigma > FAR {
+            if sigma > HALF_OF_DIGITS {
                 (y[j] - force[n + k]) / sigma
             } else {
                 moved[j] + r[j]

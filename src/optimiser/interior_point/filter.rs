@@ -1,12 +1,11 @@
 //! The tests that a line search puts to a point: progress from the last point, and the filter, pairs
 //! of infeasibility and merit that must not be dominated.
 
+use crate::constants::SUFFICIENT;
+
 /// Share of the infeasibility by which a step must improve on a filter entry (Wächter & Biegler 2006, as all
 /// constants of the filter).
 pub const MARGIN: f64 = 1e-5;
-
-/// Least share of the predicted decrease of φ.
-const ARMIJO: f64 = 1e-4;
 
 /// Exponents of the switching condition, of the directional derivative and of the infeasibility.
 pub const SLOPE_POWER: f64 = 2.3;
@@ -28,7 +27,7 @@ impl Measure {
     pub fn accepts(&self, theta: f64, phi: f64, alpha: f64) -> bool {
         let rounding = 10.0 * f64::EPSILON * self.phi.abs();
         if self.decides_by_objective(alpha) {
-            return phi - self.phi - rounding <= ARMIJO * alpha * self.slope;
+            return phi - self.phi - rounding <= SUFFICIENT * alpha * self.slope;
         }
         theta <= (1.0 - MARGIN) * self.theta || phi - rounding <= self.phi - MARGIN * self.theta
     }

@@ -2,6 +2,7 @@
 
 use nalgebra::{Cholesky, DVector, Dyn};
 
+use crate::constants::SMALL_PART;
 use crate::linear::jacobian::Jacobian;
 use crate::linear::kkt_sparse::SparseKkt;
 use crate::linear::quasi_newton::Separable;
@@ -201,9 +202,6 @@ impl Iterate {
 /// Multipliers of bounds stay within this factor of μ/distance (Wächter & Biegler 2006, eq. 16). Without
 /// this the bed takes 1 % more evaluations and loses HS18.
 const MULTIPLIER_BAND: f64 = 1e10;
-/// Least curvature of a reciprocal model relative to the mean. It does not decide: on the bed 1e-3
-/// and 1e-9 give the same.
-const LEAST_SHARE: f64 = 1e-6;
 
 impl Iterate {
     /// The Lagrangian as if every function were a sum of terms a/x where it falls with x, and of
@@ -224,7 +222,7 @@ impl Iterate {
         }
         let curvature = |i: usize| 2.0 * falling[i] / x[i];
         let all = DVector::from_fn(x.len(), |i, _| curvature(i));
-        let least = LEAST_SHARE * all.mean();
+        let least = SMALL_PART * all.mean();
         if !(least > 0.0 && least.is_finite()) {
             return None;
         }

@@ -7,21 +7,12 @@ use crate::interior_point::barrier::BarrierRule;
 use crate::interior_point::direction::{Direction, NewtonSystem};
 use crate::interior_point::filter::Filter;
 use crate::interior_point::iterate::{Iterate, Layout};
-use crate::interior_point::line_search::{Accepted, LineSearch, infeasibility};
+use crate::interior_point::line_search::{Accepted, LineSearch, SHORT_TRIALS, infeasibility};
 use crate::linear::quasi_newton::QuasiNewton;
 use crate::multipliers::ScaledMultipliers;
 use crate::observer::Phase;
 use crate::program::{Derivatives, EarlyExit, Point, Program, Progress};
 use crate::status::Status;
-
-/// Infeasibility below which multipliers of rows are recomputed by least squares. Never to do so costs
-/// 3 % and makes a false claim, always to do so loses three problems of the bed.
-const NEARLY_FEASIBLE: f64 = 1e-6;
-
-/// A step that took more trials than this counts as short. Two short steps in succession show that
-/// the quasi-Newton matrix misleads, or four far from feasible points the filter. Without this, two
-/// problems of the bed are lost; with five trials it takes 1 % more.
-const SHORT_TRIALS: usize = 7;
 
 /// How often entries may be stiffened in one iteration. With one time, trusses take twice the
 /// evaluations; more than eight do not occur but in vain.
@@ -135,6 +126,9 @@ impl InteriorPoint {
             self.activate_bounds(program);
             if let Some(ending) = self.ending(program) {
                 return Ok(ending);
+            }
+            if program.goes_far(&self.at.point) && program.falls_on(&self.at.point)? {
+                return Ok(Status::Unbounded);
             }
             // a new barrier parameter begins with an empty filter.
             let curvature = program.curvature(&self.at.point.x, &self.at.y)?;
@@ -271,7 +265,8 @@ impl InteriorPoint {
         at.s = s;
         at.keep_multipliers_in_band(&self.layout, self.barrier.mu);
         let r = self.layout.residual(&at.point.c, &at.s);
-        if r.lp_norm(1) < NEARLY_FEASIBLE {
+        // Never to do so makes a false claim, always to do so loses three problems of the bed.
+        if r.lp_norm(1) < program.options.tolerance {
             at.estimate_multipliers(&self.layout);
         }
         let change = &at.slopes.g - &before.g + at.slopes.a.tr_mul(&at.y) - before.a.tr_mul(&at.y);

@@ -12,14 +12,16 @@ use crate::program::{Derivatives, EarlyExit, Point, Program};
 /// step to the end of an exponential function.
 const LONGEST: f64 = 100.0;
 
-/// A step is accepted for the residual of the conditions alone if the residual falls by this
-/// factor, the violation and the relative rise of the barrier function are at most these, and so
-/// many trials were refused. Without such steps the bed loses nothing, but a plate of 256 thicknesses
-/// crawls: its matrix of few pairs misleads the filter (256 simulations and more, 55 with them).
-const SOFT_GAIN: f64 = 0.9;
-const SOFT_VIOLATION: f64 = 1e-4;
-const SOFT_RISE: f64 = 1e-6;
-const SOFT_TRIALS: usize = 5;
+/// A step that took more trials than this counts as short. Two short steps in succession show that
+/// the quasi-Newton matrix misleads, or four far from feasible points the filter. Without this, two
+/// problems of the bed are lost. After so many trials a step is accepted that reduces the residual of
+/// the conditions alone: without that a plate of 256 thicknesses crawls, as its matrix of few pairs
+/// misleads the filter (256 simulations and more, 55 with it).
+pub(crate) const SHORT_TRIALS: usize = 7;
+
+/// Factor by which a step must reduce what alone speaks for it: the residual of the conditions, or in a
+/// restoration the violation. Any decrease lets exponential rows crawl from far starts to the limit.
+pub(crate) const GAIN: f64 = 0.9;
 
 /// Least factor by which a refused step is shortened, and a corrected one may be shorter. By halving
 /// alone, two problems of the bed are lost.
@@ -28,10 +30,6 @@ const SHORTEST: f64 = 0.1;
 /// Number of halved steps that are announced where the functions are undefined. More would seldom be
 /// requested.
 const FORESEEN: i32 = 16;
-
-/// The search ends below this share of the least sensible step (Wächter & Biegler 2006, eq. 23). Without
-/// such an end the bed takes 1 % more evaluations.
-const LEAST_STEP: f64 = 0.05;
 
 /// Below this sum of scaled residuals a point counts as feasible. The residuals are then mostly
 /// rounding, and the barrier function alone decides. A tenth or ten times as much is the same.
@@ -125,7 +123,7 @@ impl LineSearch<'_> {
         let resolved = self.least_resolved_step(&direction);
         loop {
             let goes_on = alpha >= least && alpha > resolved;
-            if (!goes_on || trials >= SOFT_TRIALS)
+            if (!goes_on || trials >= SHORT_TRIALS)
                 && let Some(point) = first.take()
                 && let Some((point, slopes, s)) =
                     self.soft(program, &here, point, &direction, longest)?
@@ -217,7 +215,8 @@ impl LineSearch<'_> {
         let violation = self.layout.residual(&self.at.point.c, &self.at.s).amax();
         let s = &self.at.s + &direction.s * alpha;
         let rise = self.layout.barrier_function(point.f, &point.x, &s, self.mu) - here.phi;
-        if violation > SOFT_VIOLATION || rise > SOFT_RISE * here.phi.abs().max(1.0) {
+        let tolerance = program.options.tolerance;
+        if violation > tolerance || rise > tolerance * here.phi.abs().max(1.0) {
             return Ok(None);
         }
         let slopes = match program.gradients(&point.x) {
@@ -237,7 +236,7 @@ impl LineSearch<'_> {
         moved.estimate_multipliers(self.layout);
         let before = self.at.residual(self.layout, self.mu);
         let after = moved.residual(self.layout, self.mu);
-        Ok((after <= SOFT_GAIN * before).then_some((point, slopes, s)))
+        Ok((after <= GAIN * before).then_some((point, slopes, s)))
     }
 
     /// Step length below which no variable changes.
@@ -270,7 +269,7 @@ impl LineSearch<'_> {
                 least = least.min(here.theta.powf(THETA_POWER) / m.powf(SLOPE_POWER));
             }
         }
-        LEAST_STEP * least
+        least
     }
 
     /// Evaluates the point at `alpha` and, if the tests accept it, its gradients. The tests use

@@ -2,9 +2,10 @@
 
 use nalgebra::DVector;
 
+use crate::doubts::degenerate_row;
 use crate::interior_point::iterate::Layout;
 use crate::interior_point::iteration::InteriorPoint;
-use crate::interior_point::line_search::infeasibility;
+use crate::interior_point::line_search::{GAIN, infeasibility};
 use crate::program::{EarlyExit, Point, Program};
 use crate::status::Status;
 use crate::trust_region::steering::{Goal, TrustRegion};
@@ -38,6 +39,11 @@ impl InteriorPoint {
         if self.short_steps == 2 {
             self.b.reset();
             self.doubt_gradients(program)?;
+            let z = self.multipliers(program);
+            if let Some(j) = degenerate_row(program, &self.at.point, &self.at.slopes, &z) {
+                let constraint = program.constraint_name(j);
+                return Ok(Some(Status::Degenerate { constraint }));
+            }
         }
         let theta = self.theta();
         if self.short_steps == 4 {
@@ -69,7 +75,7 @@ impl InteriorPoint {
             let s = slacks(layout, p);
             let theta_new = infeasibility(&layout.residual(&p.c, &s), &p.c);
             let phi = layout.barrier_function(p.f, &p.x, &s, mu);
-            theta_new <= 0.9 * theta && filter.accepts(theta_new, phi)
+            theta_new <= GAIN * theta && filter.accepts(theta_new, phi)
         };
         let ending = search.iterate(program, accepted)?;
         let before = self.theta();

@@ -2,7 +2,8 @@
 
 use nalgebra::DVector;
 
-use crate::convergence::scaled_residual;
+use crate::constants::HALF_OF_DIGITS;
+use crate::convergence::{is_solved, scaled_residual};
 use crate::ending::FinalIterate;
 use crate::interior_point::iteration::InteriorPoint;
 use crate::multipliers::{ScaledMultipliers, scaled_multipliers};
@@ -10,13 +11,6 @@ use crate::options::Method;
 use crate::program::{Derivatives, Point, Program};
 use crate::renewal::renewed;
 use crate::state::SavedState;
-
-/// Least relative distance of the start of a resumed run from a bound: so near that it stays where it was.
-pub(crate) const RESUMED_PUSH: f64 = 1e-10;
-
-/// Larger multipliers may hide finite ones at the same point, which are fitted then. Without this,
-/// one claim of the bed is false.
-const LARGEST_MULTIPLIER: f64 = 1e20;
 
 pub(crate) fn interior_point(
     program: &mut Program<'_>,
@@ -32,7 +26,7 @@ pub(crate) fn interior_point(
     }
     let finish = finish_interior_point(program, method);
     renewed(program, finish, |program, (point, slopes)| {
-        let method = InteriorPoint::new(program, point, slopes, RESUMED_PUSH);
+        let method = InteriorPoint::new(program, point, slopes, HALF_OF_DIGITS);
         finish_interior_point(program, method)
     })
 }
@@ -41,12 +35,17 @@ fn finish_interior_point(program: &mut Program<'_>, mut method: InteriorPoint) -
     let status = method.run(program);
     let mut multipliers = method.multipliers(program);
     let mut scaled = method.optimality();
-    let parts = [&multipliers.y, &multipliers.zl, &multipliers.zu];
-    if parts.iter().any(|z| z.amax() > LARGEST_MULTIPLIER) {
-        let (point, slopes) = (&method.at.point, &method.at.slopes);
+    let (point, slopes) = (&method.at.point, &method.at.slopes);
+    // The forces of dependent rows and bounds may balance each other at any size. Where their rounding
+    // exceeds the tolerance, none may do as well.
+    let balanced = multipliers.zl.amax().max(multipliers.zu.amax());
+    if f64::EPSILON * balanced > program.options.tolerance * slopes.g.amax() {
         let zero = DVector::zeros(point.c.len());
-        multipliers = ScaledMultipliers::polished(program, point, slopes, &zero);
-        scaled = scaled_residual(program, point, slopes, &multipliers);
+        let fitted = ScaledMultipliers::polished(program, point, slopes, &zero);
+        let residual = scaled_residual(program, point, slopes, &fitted);
+        if is_solved(program, point, slopes, &fitted, residual) {
+            (multipliers, scaled) = (fitted, residual);
+        }
     }
     FinalIterate {
         status,

@@ -1,6 +1,7 @@
 //! The tests of the whole problem at a point of the interior point.
 
-use crate::convergence::{LONGEST_DOMINANCE, dominant_row, is_solved};
+use crate::constants::{HALF_OF_DIGITS, SUCCESSIVE};
+use crate::convergence::{dominant_row, is_solved};
 use crate::interior_point::iteration::InteriorPoint;
 use crate::multipliers::ScaledMultipliers;
 use crate::program::Program;
@@ -9,7 +10,6 @@ use crate::status::Status;
 /// After so many evaluations within this distance, relative to the size of the point, a run ends. Without
 /// this, x² ≤ 0 takes 2813 evaluations (608), and far starts end at a limit.
 const MOST_TRIALS: usize = 120;
-const NEARBY: f64 = 1e-8;
 
 impl InteriorPoint {
     /// How the run ends at this point, if it does.
@@ -67,7 +67,7 @@ impl InteriorPoint {
         self.at.residual(&self.layout, 0.0)
     }
 
-    /// The row without which no multipliers exist: it dominates at `LONGEST_DOMINANCE` successive
+    /// The row without which no multipliers exist: it dominates at `SUCCESSIVE` successive
     /// points that solve the program beside the size of their multipliers, but not otherwise.
     fn degenerate(&mut self, program: &Program<'_>) -> Option<usize> {
         let solves =
@@ -75,7 +75,7 @@ impl InteriorPoint {
         let z = self.multipliers(program);
         let dominant = dominant_row(program, &self.at.slopes, &z).filter(|_| solves);
         self.dominated = dominant.map_or(0, |_| self.dominated + 1);
-        dominant.filter(|_| self.dominated > LONGEST_DOMINANCE)
+        dominant.filter(|_| self.dominated > SUCCESSIVE)
     }
 
     /// Whether the point has stayed in one place for many evaluations.
@@ -83,7 +83,7 @@ impl InteriorPoint {
         let (anchor, before) = &self.anchor;
         let now = program.counts.evaluations;
         let x = &self.at.point.x;
-        if (x - anchor).amax() > NEARBY * x.amax().max(1.0) {
+        if (x - anchor).amax() > HALF_OF_DIGITS * x.amax().max(1.0) {
             self.anchor = (x.clone(), now);
             return false;
         }

@@ -2,11 +2,7 @@
 
 use nalgebra::{DMatrix, DVector};
 
-/// Newton iterations for the multiplier of the ball. They converge in less than ten.
-const ITERATIONS: usize = 60;
-
-/// Accuracy of the length of a step on the boundary. The radius needs no more.
-const LENGTH: f64 = 1e-6;
+use crate::constants::{MOST_STEPS, SMALL_PART};
 
 /// The model gᵀt + ½ tᵀH t in the eigenvectors of H.
 pub(crate) struct Spectrum {
@@ -86,10 +82,10 @@ impl Spectrum {
             true => 0.5 * (below + above),
             false => 1e-3 * above,
         };
-        for _ in 0..ITERATIONS {
+        for _ in 0..MOST_STEPS {
             let t = step(lambda);
             let length = t.norm();
-            if (length - radius).abs() <= LENGTH * radius {
+            if (length - radius).abs() <= SMALL_PART * radius {
                 break;
             }
             match length > radius {

@@ -2,11 +2,7 @@
 
 use nalgebra::{DMatrix, DVector};
 
-/// Part of the largest below which a singular value is zero: √ε.
-const VANISHES: f64 = 1.490_116_119_384_765_6e-8;
-
-/// Part of the largest influence below which one is the round-off of the derivatives.
-const ROUND_OFF: f64 = 1e-12;
+use crate::constants::{HALF_OF_DIGITS, ROUND_OFF};
 
 /// Part of a direction below which a variable does not belong to it.
 const BELONGS: f64 = 1e-5;
@@ -94,7 +90,7 @@ pub fn statistics(fit: &Fit<'_>) -> Option<Statistics> {
     let unit = DMatrix::from_fn(rows, seen.len(), |k, c| j[(k, seen[c])] / norms[seen[c]]);
     let svd = padded(unit).try_svd(false, true, f64::EPSILON, 0)?;
     let (v, sigma) = (svd.v_t?, svd.singular_values);
-    let zero = VANISHES * sigma.amax();
+    let zero = HALF_OF_DIGITS * sigma.amax();
     let direction = |k: usize| {
         let mut inner = DVector::zeros(columns);
         for (c, &column) in seen.iter().enumerate() {
@@ -169,7 +165,7 @@ fn kernel(rows: DMatrix<f64>) -> Option<DMatrix<f64>> {
     }
     let svd = padded(rows).try_svd(false, true, f64::EPSILON, 0)?;
     let (v, sigma) = (svd.v_t?, svd.singular_values);
-    let zero = VANISHES * sigma.amax();
+    let zero = HALF_OF_DIGITS * sigma.amax();
     let left: Vec<usize> = (0..n).filter(|&k| sigma[k] <= zero).collect();
     Some(DMatrix::from_fn(n, left.len(), |i, c| v[(left[c], i)]))
 }

@@ -7,9 +7,6 @@ use crate::program::{Derivatives, Program};
 use crate::quadratic::data::{Hessian, QpData, QpStep};
 use crate::quadratic::elastic::ElasticQp;
 
-/// Curvature that leads a step of the rows alone, as a part of their size by the radius.
-const STEERING: f64 = 1e-4;
-
 /// A subproblem at the point x with the values c of the rows.
 pub(crate) struct Fitting<'a> {
     pub squares: &'a SquaresModel,
@@ -18,8 +15,8 @@ pub(crate) struct Fitting<'a> {
     pub c: &'a DVector<f64>,
     pub penalty: &'a DVector<f64>,
     pub radius: f64,
-    /// Whether the objective is left out.
-    pub of_rows_alone: bool,
+    /// The curvature that leads a step of the rows alone, if the objective is left out.
+    pub of_rows_alone: Option<f64>,
 }
 
 impl Fitting<'_> {
@@ -32,14 +29,11 @@ impl Fitting<'_> {
         let lower = room(&program.lower).map(|v| v.min(0.0));
         let upper = room(&program.upper).map(|v| v.max(0.0));
         let (g, h) = match self.of_rows_alone {
-            true => {
-                let steering = STEERING * self.slopes.a.amax() / self.radius.max(1e-8);
-                (
-                    DVector::zeros(n),
-                    DMatrix::from_diagonal_element(n, n, steering),
-                )
-            }
-            false => {
+            Some(steering) => (
+                DVector::zeros(n),
+                DMatrix::from_diagonal_element(n, n, steering),
+            ),
+            None => {
                 let spectrum = self.squares.spectrum(&self.slopes.g)?;
                 let t = spectrum.step(self.radius);
                 let inside = (0..n).all(|i| lower[i] <= t[i] && t[i] <= upper[i]);

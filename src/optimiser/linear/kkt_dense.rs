@@ -2,12 +2,9 @@
 
 use nalgebra::{Cholesky, DMatrix, DVector, Dyn};
 
+use crate::constants::ROUND_OFF;
 use crate::linear::jacobian::Jacobian;
 use crate::linear::quasi_newton::QuasiNewton;
-
-/// Relative size of a pivot of the Schur complement below which rows count as dependent.
-/// A tenth makes a false claim.
-const DEPENDENT: f64 = 1e-14;
 
 /// Factors by the Schur complement S = A H⁻¹ Aᵀ + D with H = B + Σ. If there are more inequality
 /// rows than variables, they are eliminated first: H = B + Σ + A_Iᵀ D_I⁻¹ A_I, and S has the other
@@ -67,7 +64,7 @@ impl DenseKkt {
             let diagonal = s.diagonal();
             if let Some(schur) = Cholesky::new(s) {
                 let l = schur.l_dirty();
-                let independent = |c: usize| l[(c, c)].powi(2) > DEPENDENT * diagonal[c];
+                let independent = |c: usize| l[(c, c)].powi(2) > ROUND_OFF * diagonal[c];
                 if (0..kept.len()).all(independent) {
                     return Some(DenseKkt {
                         hessian,

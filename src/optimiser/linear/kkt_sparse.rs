@@ -4,13 +4,9 @@ use clarabel::algebra::CscMatrix;
 use clarabel::qdldl::{QDLDLFactorisation, QDLDLSettings};
 use nalgebra::{DMatrix, DVector, Dyn, LU};
 
+use crate::constants::HALF_OF_DIGITS;
 use crate::linear::compact::Compact;
 use crate::linear::jacobian::Jacobian;
-
-/// Least D of a row, relative to its entry a S⁻¹ aᵀ of the Schur complement, where S is h and the
-/// stiffness a²/D of inequality rows. Without it the elimination could meet a zero. Iterative
-/// refinement removes its effect.
-const SHIFT: f64 = 1e-8;
 
 /// Factors of
 ///
@@ -67,7 +63,7 @@ impl SparseKkt {
                 }
             } else {
                 indices.push(n + j);
-                values.push(-d[j].max(SHIFT * own).max(f64::MIN_POSITIVE));
+                values.push(-d[j].max(HALF_OF_DIGITS * own).max(f64::MIN_POSITIVE));
             }
             pointers.push(indices.len());
         }

@@ -1,19 +1,13 @@
 //! Solution of the linear system of a primal–dual step.
 
-use std::cmp::Ordering;
-
 use nalgebra::DVector;
 
+use crate::constants::ROUND_OFF;
 use crate::linear::curvature::{Curvature, symmetric_product};
 use crate::linear::jacobian::Jacobian;
 use crate::linear::kkt_dense::DenseKkt;
 use crate::linear::kkt_sparse::SparseKkt;
 use crate::linear::quasi_newton::QuasiNewton;
-
-/// Residual, relative to the right-hand side, at which refinement ends, and the largest number of
-/// refinements. Two instead of five cost 2 % of the evaluations.
-const EXACT: f64 = 1e-13;
-const REFINEMENTS: usize = 5;
 
 /// Factors of
 ///
@@ -125,18 +119,14 @@ impl KktSystem {
         let sigma = &self.sigma;
         match &self.factors {
             Factors::Dense(dense) => refined(
-                if dense.regularisation > 0.0 {
-                    0
-                } else {
-                    REFINEMENTS
-                },
+                dense.regularisation == 0.0,
                 (p, q, a),
                 |p, v| p - b.multiply(v) - sigma.component_mul(v),
                 |y| self.d.component_mul(y),
                 |p, q| dense.solve(a, &self.d, p, q),
             ),
             Factors::Sparse(sparse) => refined(
-                REFINEMENTS,
+                true,
                 (p, q, a),
                 |p, v| p - b.multiply(v) - sigma.component_mul(v),
                 |y| self.d.component_mul(y),
@@ -147,7 +137,7 @@ impl KktSystem {
                 let q = q.clone().resize_vertically(exact.rows.shape().0, 0.0);
                 let h = sigma + &exact.diagonal;
                 let (dx, dy) = refined(
-                    REFINEMENTS,
+                    true,
                     (p, &q, &exact.rows),
                     |p, v| p - h.component_mul(v),
                     |y| exact.damp(&self.d, y),
@@ -159,10 +149,10 @@ impl KktSystem {
     }
 }
 
-/// Solves for dx and dy by `solve_once`, with at most `most` refinements. `rest` is p − (B + Σ) dx
+/// Solves for dx and dy by `solve_once`, refined as long as the residual falls if `refines`. `rest` is p − (B + Σ) dx
 /// and `damping` D dy.
 fn refined(
-    most: usize,
+    refines: bool,
     (p, q, a): (&DVector<f64>, &DVector<f64>, &Jacobian),
     mut rest: impl FnMut(&DVector<f64>, &DVector<f64>) -> DVector<f64>,
     damping: impl Fn(&DVector<f64>) -> DVector<f64>,
@@ -171,12 +161,12 @@ fn refined(
     let (mut dx, mut dy) = solve_once(p, q);
     let size = p.amax().max(q.amax());
     let mut last = f64::INFINITY;
-    for _ in 0..most {
+    while refines {
         let rp = rest(p, &dx) - a.tr_mul(&dy);
         let rq = q - a * &dx + damping(&dy);
         let residual = rp.amax().max(rq.amax());
-        let stands = residual.partial_cmp(&last) != Some(Ordering::Less);
-        if residual <= EXACT * size || stands {
+        let falls = residual < last;
+        if residual <= ROUND_OFF * size || !falls {
             break;
         }
         last = residual;

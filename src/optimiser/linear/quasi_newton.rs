@@ -5,6 +5,7 @@ use std::borrow::Cow;
 use nalgebra::{Cholesky, DMatrix, DVector};
 use serde::{Deserialize, Serialize};
 
+use crate::constants::ROUND_OFF;
 use crate::linear::compact::Compact;
 use crate::linear::curvature::Curvature;
 
@@ -100,9 +101,6 @@ pub(crate) struct Spectrum {
     /// λ, positive.
     pub values: DVector<f64>,
 }
-
-/// Least eigenvalue kept, relative to σ: rounding must not make B indefinite.
-const LEAST_EIGENVALUE: f64 = 1e-10;
 
 impl QuasiNewton {
     /// The identity, of order `n`, kept dense up to `dense_limit`.
@@ -338,7 +336,7 @@ impl QuasiNewton {
             core[(i, i)] += sigma;
         }
         let eigen = ((&core + core.transpose()) * 0.5).symmetric_eigen();
-        let least = LEAST_EIGENVALUE * sigma;
+        let least = ROUND_OFF * sigma;
         Spectrum {
             sigma,
             vectors: q * eigen.eigenvectors,

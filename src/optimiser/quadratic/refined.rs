@@ -3,21 +3,15 @@
 
 use nalgebra::{DMatrix, DVector};
 
+use crate::constants::{ROUND_OFF, SMALL_PART};
 use crate::quadratic::data::{Hessian, QpData, QpStep};
 
-/// Without refinement, the trust region takes 2 to 5 % more evaluations and loses three problems of the
-/// bed.
-///
 /// Distance from a bound of the box, relative to its size, at which a step counts as on it.
 const ON_BOX: f64 = 1e-7;
-
-/// A multiplier above this part of its penalty counts as limited by the penalty.
-const HELD: f64 = 1.0 - 1e-6;
 
 /// Largest difference of the refined step, as a part of the box. Largest violation of a condition
 /// by rounding, as a part of the forces and of the box.
 const DIFFERENCE: f64 = 1e-2;
-const ROUNDING: f64 = 1e-12;
 
 /// Solves the conditions for the active set of `found` as equations,
 ///
@@ -51,7 +45,7 @@ pub(crate) fn refine(data: &QpData<'_>, found: &QpStep) -> Option<QpStep> {
         let norm = data.a.row_amax(j).max(1e-100);
         let pushes =
             |room: f64| y.abs() * norm * norm * radius > room * force.max(f64::MIN_POSITIVE);
-        if y.abs() >= HELD * data.penalty[j] {
+        if y.abs() >= (1.0 - SMALL_PART) * data.penalty[j] {
             return None;
         } else if data.above[j] == -data.below[j] || (y > 0.0 && pushes(above)) {
             rows.push((j, data.above[j]));
@@ -102,7 +96,7 @@ fn is_valid(data: &QpData<'_>, found: &QpStep, refined: &QpStep, radius: f64, fo
     let QpStep { d, y } = refined;
     let residual = data.g + data.b.multiply(d) + data.a.tr_mul(y);
     let reached = data.a * d;
-    let (small, weak) = (ROUNDING * radius, ROUNDING * force);
+    let (small, weak) = (ROUND_OFF * radius, ROUND_OFF * force);
     let near = (d - &found.d).amax() <= DIFFERENCE * radius;
     let in_box = (0..d.len()).all(|i| {
         let push = residual[i];

@@ -5,11 +5,9 @@ use clarabel::algebra::CscMatrix;
 use clarabel::solver::{DefaultSolver, IPSolver, NonnegativeConeT, SolverStatus, ZeroConeT};
 use nalgebra::DVector;
 
+use crate::constants::SMALL_PART;
 use crate::linear::quasi_newton::Spectrum;
 use crate::quadratic::data::settings;
-
-/// Eigenvalues this close to σ, relatively, count as σ: their springs would be stiff beyond measure.
-const SAME: f64 = 1e-6;
 
 /// Minimises ½ s tᵀB t + qᵀ(t, e) subject to rows · (t, e) ≤ rhs, for B = σ I + W diag(λ − σ) Wᵀ and
 /// s = `factor`; returns status, (t, e) and the multipliers of the rows.
@@ -30,7 +28,7 @@ pub(crate) fn solve(
 ) -> Option<(SolverStatus, Vec<f64>, Vec<f64>)> {
     let n = b.vectors.nrows();
     let (soft, stiff) = (0..b.values.len())
-        .filter(|&k| (b.values[k] - b.sigma).abs() > SAME * b.sigma)
+        .filter(|&k| (b.values[k] - b.sigma).abs() > SMALL_PART * b.sigma)
         .partition::<Vec<usize>, _>(|&k| b.values[k] < b.sigma);
     let (columns, bounded) = (rows.n, rows.m);
     let total = columns + soft.len() + stiff.len();

@@ -6,7 +6,8 @@
 
 use nalgebra::{DMatrix, DVector};
 
-use crate::convergence::{LONGEST_DOMINANCE, dominant_row, is_solved, kkt, scaled_residual};
+use crate::constants::{HALF_OF_DIGITS, SUCCESSIVE, SUFFICIENT};
+use crate::convergence::{dominant_row, is_solved, kkt, scaled_residual};
 use crate::ending::infeasible;
 use crate::least_squares::model::SquaresModel;
 use crate::linear::quasi_newton::QuasiNewton;
@@ -15,17 +16,7 @@ use crate::observer::Phase;
 use crate::program::{Derivatives, EarlyExit, Point, Program, Progress};
 use crate::quadratic::elastic::ElasticQp;
 use crate::status::Status;
-use crate::trust_region::steering::{Goal, IRREDUCIBLE, Model, TrustRegion};
-
-/// Share of the predicted reduction for which a step is accepted.
-const ACCEPT: f64 = 1e-4;
-
-/// The same share where no step is left.
-const STATIONARY: f64 = 1e-4;
-
-/// Number of successive steps whose predicted reduction may be less than rounding. Without this, steep
-/// starts end at the limit of iterations.
-const LOST_STEPS: usize = 4;
+use crate::trust_region::steering::{Goal, Model, TrustRegion};
 
 impl TrustRegion {
     pub(crate) fn new(
@@ -110,12 +101,15 @@ impl TrustRegion {
         let mut lost = 0;
         let mut failed = 0;
         loop {
-            if self.goal == Goal::Optimum && program.is_unbounded(&self.point) {
+            if self.goal == Goal::Optimum
+                && (program.is_unbounded(&self.point)
+                    || program.goes_far(&self.point) && program.falls_on(&self.point)?)
+            {
                 return Ok(Status::Unbounded);
             }
             let Some(model) = self.solve_model(program) else {
                 if self.b.is_empty() && self.radius < 1e-6 {
-                    return Ok(self.end(program, STATIONARY));
+                    return Ok(self.end(program, SUFFICIENT));
                 }
                 self.b.reset();
                 if let Some(squares) = &mut self.squares {
@@ -126,7 +120,7 @@ impl TrustRegion {
             };
             self.y.copy_from(&model.step.y);
             if model.irreducible
-                && let ending @ Status::Infeasible { .. } = self.end(program, IRREDUCIBLE)
+                && let ending @ Status::Infeasible { .. } = self.end(program, HALF_OF_DIGITS)
             {
                 return Ok(ending);
             }
@@ -150,16 +144,16 @@ impl TrustRegion {
             };
             // What is left to gain is below a thousandth of a standard deviation of every number.
             let nearly = self.is_fitted(program, &model, program.options.tolerance.sqrt());
-            if model.predicted <= 0.0 || stays || lost > LOST_STEPS || self.radius < tiny {
+            if model.predicted <= 0.0 || stays || lost >= SUCCESSIVE || self.radius < tiny {
                 return Ok(match nearly {
                     true => Status::Converged,
-                    false => self.end(program, STATIONARY),
+                    false => self.end(program, SUFFICIENT),
                 });
             }
             program.next_iteration()?;
             let (ratio, trials) = self.attempt(program, &model, refused)?;
             // Noise of the functions hides it.
-            if nearly && ratio <= ACCEPT && ratio != f64::NEG_INFINITY {
+            if nearly && ratio <= SUFFICIENT && ratio != f64::NEG_INFINITY {
                 return Ok(Status::Converged);
             }
             let boundary = size >= 0.99 * self.radius;
@@ -185,7 +179,7 @@ impl TrustRegion {
                 }
             }
             if ratio != f64::NEG_INFINITY {
-                refused = ratio <= ACCEPT;
+                refused = ratio <= SUFFICIENT;
             }
             let scaled = self.optimality(program);
             let progress = Progress {
@@ -193,7 +187,7 @@ impl TrustRegion {
                 barrier: 0.0,
                 step: size,
                 regularisation: radius,
-                primal_step: if ratio > ACCEPT { 1.0 } else { 0.0 },
+                primal_step: if ratio > SUFFICIENT { 1.0 } else { 0.0 },
                 dual_step: 1.0,
                 trials,
                 phase: if self.goal == Goal::Optimum {
@@ -204,7 +198,7 @@ impl TrustRegion {
             };
             let point = self.point.clone();
             program.report(&point, &progress)?;
-            if ratio > ACCEPT && reached(program, &self.point) {
+            if ratio > SUFFICIENT && reached(program, &self.point) {
                 return Ok(Status::Converged);
             }
             // A fit is judged by its next model.
@@ -259,7 +253,7 @@ impl TrustRegion {
         self.dominated = dominant.map_or(0, |_| self.dominated + 1);
         let constraint = program.constraint_name(dominant?);
         // Each point is tested twice, and each step halves the distance at most.
-        (self.dominated > 4 * LONGEST_DOMINANCE).then_some(Status::Degenerate { constraint })
+        (self.dominated > 4 * SUCCESSIVE).then_some(Status::Degenerate { constraint })
     }
 
     /// Exact penalty function w f + Σ ν_j violation_j.
@@ -288,7 +282,7 @@ impl TrustRegion {
         };
         let ratio = |at: f64| (here - at + rounding) / (model.predicted + rounding);
         let first = ratio(self.merit(program, &trial));
-        if first > ACCEPT {
+        if first > SUFFICIENT {
             let accepted = self.accept(program, trial)?;
             return Ok((if accepted { first } else { f64::NEG_INFINITY }, 1));
         }
@@ -310,7 +304,7 @@ impl TrustRegion {
             Err(halt) => return Err(halt),
         };
         let gain = ratio(self.merit(program, &second));
-        if gain > ACCEPT && self.accept(program, second)? {
+        if gain > SUFFICIENT && self.accept(program, second)? {
             return Ok((gain, 2));
         }
         Ok((first, 2))

@@ -3,6 +3,7 @@
 
 use nalgebra::{DMatrix, DVector};
 
+use crate::constants::HALF_OF_DIGITS;
 use crate::least_squares::model::SquaresModel;
 use crate::least_squares::subproblem::Fitting;
 use crate::linear::quasi_newton::{QuasiNewton, Spectrum};
@@ -12,10 +13,6 @@ use crate::quadratic::elastic::ElasticQp;
 
 /// Share of the best possible reduction of the linearised violation that a step must reach.
 const STEERING: f64 = 0.1;
-
-/// Share of the violation that the linearisation may still remove at a point called infeasible
-/// before all steps are exhausted. With 1e-4, HS111 from ten times its start is called infeasible.
-pub(crate) const IRREDUCIBLE: f64 = 1e-8;
 
 /// What the iteration minimises.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -63,13 +60,14 @@ impl TrustRegion {
             * program
                 .least_exceeded(&c)
                 .min(program.least_exceeded(&ahead));
-        let mut irreducible = self.goal == Goal::Feasibility && left >= (1.0 - IRREDUCIBLE) * now;
+        let mut irreducible =
+            self.goal == Goal::Feasibility && left >= (1.0 - HALF_OF_DIGITS) * now;
         if self.goal == Goal::Optimum && left > small {
             let kept = std::mem::replace(&mut self.penalty, DVector::from_element(c.len(), 1.0));
             let best = self.solve_qp(program, 0.0, &c);
             self.penalty = kept;
             let best = best.map_or(left, |s| self.linear_violation(program, &s.d));
-            irreducible = best >= (1.0 - IRREDUCIBLE) * now;
+            irreducible = best >= (1.0 - HALF_OF_DIGITS) * now;
             for _ in 0..10 {
                 let target = if best <= small {
                     10.0 * small
@@ -127,6 +125,8 @@ impl TrustRegion {
         weight: f64,
         c: &DVector<f64>,
     ) -> Option<QpStep> {
+        let steering = 1e-4 * self.slopes.a.amax() / self.radius.max(1e-8);
+        let of_steering = weight != self.weight();
         if let Some(squares) = &self.squares {
             let subproblem = Fitting {
                 squares,
@@ -135,7 +135,7 @@ impl TrustRegion {
                 c,
                 penalty: &self.penalty,
                 radius: self.radius,
-                of_rows_alone: weight != self.weight(),
+                of_rows_alone: of_steering.then_some(steering),
             };
             return subproblem.solve(program, &mut self.qp);
         }
@@ -153,8 +153,6 @@ impl TrustRegion {
             (keep * (program.upper[i] - x[i])).clamp(0.0, radius)
         });
         let n = x.len();
-        let steering = 1e-4 * self.slopes.a.amax() / radius.max(1e-8);
-        let of_steering = weight != self.weight();
         let diagonal: DMatrix<f64>;
         let b = match (self.b.is_dense(), of_steering) {
             (true, false) => Hessian::Dense(self.b.dense()),
