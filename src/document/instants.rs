@@ -3,7 +3,7 @@
 use super::combined::{Distance, PowerOf, Relative};
 use super::measured::{
     AngularMomentum, JointReaction, JointSlide, LargestFibreStress, LargestSectionForce, OfSpring,
-    SectionComponent, SectionPlace,
+    OfStop, SectionComponent, SectionPlace,
 };
 use super::mechanics::Point;
 use crate::quantity::{Quantity, Vector};
@@ -78,6 +78,10 @@ pub enum Instant {
     SpringForce(OfSpring),
     /// Torque by which a torsion spring turns its joint back [N m], damping included.
     SpringTorque(OfSpring),
+    /// Normal force of a stop \[N\], or the torque of one of an angle [N m]; never negative.
+    ContactForce(OfStop),
+    /// How deep a stop is entered [m or rad]; negative before it, to the nearer limit.
+    Penetration(OfStop),
     /// Range of a projectile that is released at this instant \[m\].
     Range(Range),
     /// Von Mises stress by yield stress of a body of shells, aggregated over both faces of their Gauss points.

@@ -7,7 +7,7 @@ use flexbody_mechanics::model;
 use schemars::JsonSchema;
 use serde::Deserialize;
 
-/// A force, torque, spring, damper or friction.
+/// A force, torque, spring, damper, friction or stop.
 #[derive(Clone, Debug, Deserialize, JsonSchema)]
 #[serde(rename_all = "snake_case", deny_unknown_fields)]
 pub enum Load {
@@ -24,6 +24,8 @@ pub enum Load {
     Damping(Damping),
     /// Coulomb friction in a joint: size times tanh(rate / width).
     Friction(Friction),
+    /// Stops of a joint or of the distance of two points, which press back smoothly.
+    Stop(Stop),
     /// A pressure on shells of a body of `elements`, along the normals of the deformed surface.
     Pressure(Pressure),
     /// A force per area on shells of a body of `elements`, in a fixed direction.
@@ -278,6 +280,51 @@ pub struct Friction {
     pub width: Quantity,
 }
 
+/// Stops of a joint or of a distance: N = k ρⁿ ρ' (1 + ³⁄₂ c δ̇), never negative, with the penetration δ and its smooth ramp ρ.
+/// Give `joint`, or `between` and `at`.
+#[derive(Clone, Debug, Deserialize, JsonSchema)]
+#[serde(deny_unknown_fields)]
+pub struct Stop {
+    /// Name of a revolute, prismatic, cylindrical or planar joint.
+    pub joint: Option<String>,
+    /// Motion of a cylindrical joint, default rotation.
+    pub motion: Option<Motion>,
+    /// Two bodies whose points are stopped; one of them may be "ground".
+    pub between: Option<[String; 2]>,
+    /// Their points.
+    pub at: Option<Ends>,
+    /// The angle, displacement or distance may not fall below this. An angle or displacement is that of the first body
+    /// relative to the second (ground counts as the second), from the placement.
+    #[schemars(extend("unit" = "m or rad"))]
+    pub lower: Option<Quantity>,
+    /// It may not rise above this.
+    #[schemars(extend("unit" = "m or rad"))]
+    pub upper: Option<Quantity>,
+    /// Stiffness k: force or torque per penetration, to the power of the exponent if there is one.
+    #[schemars(extend("unit" = "N/m or N m/rad", "exclusiveMinimum" = 0))]
+    pub stiffness: Quantity,
+    /// Dissipation c: at small speeds v of impact the rebound has 1 − c v of it; default 0.
+    #[serde(default = "nothing")]
+    #[schemars(extend("unit" = "s/m or s/rad", "minimum" = 0))]
+    pub dissipation: Quantity,
+    /// Width w of the onset, from w/2 before the limit to w/2 behind it. A smaller width is sharper and needs finer steps.
+    #[schemars(extend("unit" = "m or rad", "exclusiveMinimum" = 0))]
+    pub width: Quantity,
+    /// Exponent n of the penetration, default 1. A rubber buffer has 1.5 to 3.
+    #[serde(default = "linear")]
+    #[schemars(extend(
+        "unit" = "1",
+        "minimum" = 1,
+        "design_variable" = "the exponent says which law the numbers of a stop have"
+    ))]
+    pub exponent: f64,
+}
+
+/// The exponent 1.
+fn linear() -> f64 {
+    1.0
+}
+
 /// A pressure on shells of a body of elements.
 #[derive(Clone, Debug, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
@@ -354,6 +401,7 @@ impl Load {
             Load::TorsionSpring(_) => "torsion_spring",
             Load::Damping(_) => "damping",
             Load::Friction(_) => "friction",
+            Load::Stop(_) => "stop",
             Load::Pressure(_) => "pressure",
             Load::Area(_) => "area",
             Load::Edge(_) => "edge",

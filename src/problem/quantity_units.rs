@@ -24,9 +24,10 @@ pub(super) fn name_units_of_joints(variables: &mut [Variable], scene: &Scene<f64
             let name = keys.get(1).filter(|_| keys[0] == "loads")?;
             let load = scene.model.loads.iter().find(|load| load.name == *name)?;
             match load.kind {
-                LoadKind::Damping { dof, .. } | LoadKind::Friction { dof, .. } => {
-                    Some(dof == DegreeOfFreedom::Translation)
-                }
+                LoadKind::DistanceStop { .. } => Some(true),
+                LoadKind::Damping { dof, .. }
+                | LoadKind::Friction { dof, .. }
+                | LoadKind::JointStop { dof, .. } => Some(dof == DegreeOfFreedom::Translation),
                 LoadKind::BallDamping { .. } => Some(false),
                 _ => None,
             }

@@ -13,7 +13,7 @@ use flexbody_mathematics::math::{Complex64, Parameters, Scalar};
 use flexbody_mechanics::integrate::implicit::ggl::{Equations, StepState};
 use flexbody_mechanics::model::Interpolation;
 use flexbody_mechanics::model::{
-    Axes, DegreeOfFreedom, JointKind, Load, LoadKind, Model, Smoothness, TimeFunction,
+    Axes, DegreeOfFreedom, JointKind, Load, LoadKind, Model, NormalLaw, Smoothness, TimeFunction,
 };
 use flexbody_mechanics::system::InMotion;
 use flexbody_mechanics::system::initial;
@@ -112,6 +112,49 @@ fn kinds(body_b: Option<usize>, numbers: &mut Numbers) -> Vec<(JointKind, LoadKi
         coefficient,
     };
     all.push((Spherical, ball));
+    all.extend(stops(body_b, numbers));
+    all
+}
+
+/// Stops that are entered deeply, that press from both sides, and that are within their onset.
+fn stops(body_b: Option<usize>, numbers: &mut Numbers) -> Vec<(JointKind, LoadKind<f64>)> {
+    use JointKind::{Prismatic, Revolute, Spherical};
+    let law = |exponent: f64, width: f64| NormalLaw {
+        exponent,
+        stiffness: 3.0,
+        dissipation: 0.2,
+        width,
+    };
+    let mut all = Vec::new();
+    for (limits, law) in [
+        ([Some(4.0), None], law(1.0, 0.3)),
+        ([None, Some(-4.0)], law(1.5, 0.3)),
+        ([Some(3.5), Some(-4.5)], law(2.0, 0.1)),
+        ([Some(0.5), Some(0.6)], law(1.0, 12.0)),
+    ] {
+        for (kind, dof) in [
+            (Revolute, DegreeOfFreedom::Rotation),
+            (Prismatic, DegreeOfFreedom::Translation),
+        ] {
+            let stop = LoadKind::JointStop {
+                joint: 0,
+                dof,
+                counter: None,
+                limits,
+                law: law.clone(),
+            };
+            all.push((kind, stop));
+        }
+        let distance = LoadKind::DistanceStop {
+            body_a: 1,
+            body_b,
+            point_a: numbers.vector(),
+            point_b: numbers.vector(),
+            limits,
+            law,
+        };
+        all.push((Spherical, distance));
+    }
     all
 }
 
@@ -254,8 +297,11 @@ fn potentials() {
         let q = lift(&case.q);
         let exact = case.by_parameters(|model| energy(model, &q));
         agree(&case, "energy by parameters", &parameters(&cot), &exact);
-        if matches!(case.model.loads[0].kind, LoadKind::Spring { .. }) {
-            // At rest, the force of a spring is minus the derivative of its energy.
+        if matches!(
+            case.model.loads[0].kind,
+            LoadKind::Spring { .. } | LoadKind::JointStop { .. } | LoadKind::DistanceStop { .. }
+        ) {
+            // At rest, the force of a spring or a stop is minus the derivative of its energy.
             let still = forces(&case, &case.model, &case.q, &[0.0; 12], TIME);
             let down: Vec<f64> = y.iter().map(|y| -y / 0.7).collect();
             agree(&case, "force from energy", &still, &down);

@@ -54,6 +54,7 @@ mod rounded_joints;
 mod side_by_side;
 mod singular_positions;
 mod steps_in_use;
+mod stops;
 mod turned_factors;
 mod windows;
 mod work_of_gradients;

@@ -298,6 +298,11 @@ impl Plane {
                     joint,
                     dof: DegreeOfFreedom::Rotation,
                     ..
+                }
+                | LoadKind::JointStop {
+                    joint,
+                    dof: DegreeOfFreedom::Rotation,
+                    ..
                 } => {
                     let joint = &model.joints[*joint];
                     let n = turned.normals[joint.body_a];
@@ -315,7 +320,12 @@ impl Plane {
                 | LoadKind::Friction {
                     dof: DegreeOfFreedom::Translation,
                     ..
-                } => {}
+                }
+                | LoadKind::JointStop {
+                    dof: DegreeOfFreedom::Translation,
+                    ..
+                }
+                | LoadKind::DistanceStop { .. } => {}
             }
         }
     }

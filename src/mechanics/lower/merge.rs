@@ -237,6 +237,13 @@ fn move_load<S: Scalar>(kind: &mut LoadKind<S>, on_host: &[Option<Pose<S>>]) {
             point_a,
             point_b,
             ..
+        }
+        | LoadKind::DistanceStop {
+            body_a,
+            body_b,
+            point_a,
+            point_b,
+            ..
         } => {
             moved(body_a, point_a);
             if let Some(body) = body_b {
@@ -246,7 +253,8 @@ fn move_load<S: Scalar>(kind: &mut LoadKind<S>, on_host: &[Option<Pose<S>>]) {
         LoadKind::TorsionSpring { .. }
         | LoadKind::Damping { .. }
         | LoadKind::BallDamping { .. }
-        | LoadKind::Friction { .. } => {}
+        | LoadKind::Friction { .. }
+        | LoadKind::JointStop { .. } => {}
         // It acts on a flexible body, and these are not merged.
         LoadKind::Distributed(_) => {}
     }

@@ -116,6 +116,13 @@ fn vectors(model: &Model<f64>) -> (Vec<Vec3<f64>>, Vec<Vec3<f64>>) {
                 point_a,
                 point_b,
                 ..
+            }
+            | LoadKind::DistanceStop {
+                body_a,
+                body_b,
+                point_a,
+                point_b,
+                ..
             } => {
                 let at = |body: usize, point: &Vec3<f64>| {
                     model.bodies[body].position + turn(body) * point
@@ -140,6 +147,7 @@ fn vectors(model: &Model<f64>) -> (Vec<Vec3<f64>>, Vec<Vec3<f64>>) {
             | LoadKind::Damping { .. }
             | LoadKind::BallDamping { .. }
             | LoadKind::Friction { .. }
+            | LoadKind::JointStop { .. }
             | LoadKind::Distributed(_) => {}
         }
     }

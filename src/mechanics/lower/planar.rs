@@ -321,12 +321,20 @@ pub(super) fn points<S: Scalar>(kind: &LoadKind<S>) -> [Option<(Option<usize>, V
             point_a,
             point_b,
             ..
+        }
+        | LoadKind::DistanceStop {
+            body_a,
+            body_b,
+            point_a,
+            point_b,
+            ..
         } => [Some((Some(*body_a), *point_a)), Some((*body_b, *point_b))],
         LoadKind::Torque { .. }
         | LoadKind::TorsionSpring { .. }
         | LoadKind::Damping { .. }
         | LoadKind::BallDamping { .. }
         | LoadKind::Friction { .. }
+        | LoadKind::JointStop { .. }
         | LoadKind::Distributed(_) => [None, None],
     }
 }

@@ -80,6 +80,13 @@ pub(super) fn holds<S: Scalar>(
                 point_a,
                 point_b,
                 ..
+            }
+            | LoadKind::DistanceStop {
+                body_a,
+                body_b,
+                point_a,
+                point_b,
+                ..
             } => {
                 if is(*body_a) {
                     vanishes(Some(point_a), &turns);
@@ -91,7 +98,8 @@ pub(super) fn holds<S: Scalar>(
             LoadKind::TorsionSpring { joint, .. }
             | LoadKind::Damping { joint, .. }
             | LoadKind::BallDamping { joint, .. }
-            | LoadKind::Friction { joint, .. } => {
+            | LoadKind::Friction { joint, .. }
+            | LoadKind::JointStop { joint, .. } => {
                 let joint = &model.joints[*joint];
                 if is(joint.body_a) || joint.body_b.is_some_and(is) {
                     vanishes(None, &turns);
@@ -139,7 +147,7 @@ fn looks_at<S: Scalar>(scene: &Scene<S>, function: &Function<S>) -> Vec<(usize, 
         | Instant::LargestDeformation { .. } => Vec::new(),
         // Loads turn only bodies that are no points. Angular velocities are zero, but the angular
         // momentum of a centre is not, whatever its body's rotation.
-        Instant::AngularMomentum(_) | Instant::Spring(_) | Instant::Power(_) => Vec::new(),
+        Instant::AngularMomentum(_) | Instant::Load(_) | Instant::Power(_) => Vec::new(),
         Instant::Reaction(wrench) => {
             let all = reactions::turning(scene, wrench).into_iter();
             all.map(|body| (body, None)).collect()

@@ -136,7 +136,8 @@ impl Welded {
                 }
             }
             for load in &model.loads {
-                if let LoadKind::Spring { body_a, body_b, .. } = load.kind
+                if let LoadKind::Spring { body_a, body_b, .. }
+                | LoadKind::DistanceStop { body_a, body_b, .. } = load.kind
                     && links([Some(body_a), body_b])
                 {
                     let name = &load.name;
@@ -208,17 +209,10 @@ impl Welded {
 /// Loads that act through a joint, and functions that observe its reaction. They prevent its removal.
 fn loads_on(scene: &Scene<f64>, joint: usize) -> Vec<ViolatedCondition> {
     let model = &scene.model;
-    let acts = |kind: &LoadKind<f64>| match kind {
-        LoadKind::TorsionSpring { joint: own, .. }
-        | LoadKind::Damping { joint: own, .. }
-        | LoadKind::BallDamping { joint: own, .. }
-        | LoadKind::Friction { joint: own, .. } => *own == joint,
-        LoadKind::Force { .. }
-        | LoadKind::Torque { .. }
-        | LoadKind::Spring { .. }
-        | LoadKind::Distributed(_) => false,
-    };
-    let loads = model.loads.iter().filter(|load| acts(&load.kind));
+    let mut loads = model.loads.iter();
+    let loads = loads
+        .by_ref()
+        .filter(|load| load.kind.joint() == Some(joint));
     let told =
         loads.map(|load| ViolatedCondition::plain(format!("load \"{}\" acts on it", load.name)));
     let mut all: Vec<ViolatedCondition> = told.collect();

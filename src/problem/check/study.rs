@@ -264,6 +264,12 @@ impl Checker<'_> {
             Instant::SpringTorque(of) => {
                 self.spring(&join(pointer, "spring_torque"), &of.load, true);
             }
+            Instant::ContactForce(of) => {
+                self.stop_of(&join(pointer, "contact_force"), &of.load);
+            }
+            Instant::Penetration(of) => {
+                self.stop_of(&join(pointer, "penetration"), &of.load);
+            }
             Instant::Rotation(rotation) => {
                 let pointer = join(pointer, "rotation");
                 self.moving(&pointer, &rotation.body, &None);

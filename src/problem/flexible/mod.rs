@@ -384,6 +384,13 @@ impl<S: Scalar> FlexibleBodies<S> {
                     point_a,
                     point_b,
                     ..
+                }
+                | LoadKind::DistanceStop {
+                    body_a,
+                    body_b,
+                    point_a,
+                    point_b,
+                    ..
                 } => {
                     self.move_place(model, load, body_a, point_a);
                     if let Some(body) = body_b {
@@ -403,6 +410,7 @@ impl<S: Scalar> FlexibleBodies<S> {
                 | LoadKind::Damping { .. }
                 | LoadKind::BallDamping { .. }
                 | LoadKind::Friction { .. }
+                | LoadKind::JointStop { .. }
                 | LoadKind::Distributed(_) => {}
             }
             model.loads[k].kind = kind;

@@ -2,14 +2,17 @@
 //!
 //! For virtual velocities ψ, ψᵀf is the power of a load, linear in ψ. `power.rs` has the forces and
 //! `pull.rs` the transposed derivative of the power, once for each kind and for any scalar. Forces,
-//! Jacobians and pull-backs all use these two, so they agree. Loads that are spread over the elements of a
+//! Jacobians and pull-backs all use these two, so they agree. Stops have both in `stop.rs`, and their law in `normal_law.rs`. Loads that are spread over the elements of a
 //! flexible body act on its coordinates too: `distributed.rs` has all of theirs.
 
 mod distributed;
+pub mod gaps;
+pub mod measured;
+mod normal_law;
 mod parameters;
 mod power;
 mod pull;
-pub mod springs;
+mod stop;
 pub mod work;
 
 use super::bodies::{BodyMotion, add6, velocities_of};
@@ -68,9 +71,17 @@ fn for_each_load<S: Scalar>(
                 point_a,
                 point_b,
                 ..
+            }
+            | LoadKind::DistanceStop {
+                body_a,
+                body_b,
+                point_a,
+                point_b,
+                ..
             } => acting((*body_a, at(point_a)), (*body_b, at(point_b))),
-            // The angle of a spring is that of the bodies; it does not include drives.
-            LoadKind::TorsionSpring { joint, counter, .. } => {
+            // The angle of a spring or a stop is that of the bodies; it does not include drives.
+            LoadKind::TorsionSpring { joint, counter, .. }
+            | LoadKind::JointStop { joint, counter, .. } => {
                 let acting = on_joint(*joint);
                 let ends = [&acting.a.motion.orientation, &acting.b.motion.orientation];
                 let counted = counter.map(|counter| {
@@ -147,6 +158,17 @@ fn blocks<S: Scalar>(kind: &LoadKind<S>) -> Blocks {
         LoadKind::Spring { damping, .. } => of(BOTH, BOTH, damped(damping, BOTH)),
         LoadKind::TorsionSpring { damping, .. } => of(ANGULAR, ANGULAR, damped(damping, ANGULAR)),
         LoadKind::BallDamping { .. } => of(ANGULAR, ANGULAR, ANGULAR),
+        LoadKind::JointStop {
+            dof: DegreeOfFreedom::Rotation,
+            law,
+            ..
+        } => of(ANGULAR, ANGULAR, damped(&law.dissipation, ANGULAR)),
+        LoadKind::JointStop {
+            dof: DegreeOfFreedom::Translation,
+            law,
+            ..
+        }
+        | LoadKind::DistanceStop { law, .. } => of(BOTH, BOTH, damped(&law.dissipation, BOTH)),
         LoadKind::Damping { dof, .. } | LoadKind::Friction { dof, .. } => match dof {
             DegreeOfFreedom::Rotation => of(ANGULAR, ANGULAR, ANGULAR),
             DegreeOfFreedom::Translation => of(BOTH, BOTH, BOTH),
@@ -255,7 +277,7 @@ fn give_to_states(
     }
 }
 
-/// The first spring of length zero in the placement whose ends may not meet, if any.
+/// The first spring or stop of length zero in the placement whose ends may not meet, if any.
 pub fn without_length(model: &Model<f64>) -> Option<&str> {
     let (q, v) = guess(model);
     let mut motions = Vec::new();
@@ -275,11 +297,14 @@ pub fn without_length(model: &Model<f64>) -> Option<&str> {
         {
             found = found.or(Some(i));
         }
+        if matches!(kind, LoadKind::DistanceStop { .. }) && power::apart(at).length == 0.0 {
+            found = found.or(Some(i));
+        }
     });
     found.map(|i| model.loads[i].name.as_str())
 }
 
-/// Potential energy of the springs, Σ ½ k x² + ¼ k3 x⁴ (torsion springs: Σ ½ k x²) \[J\].
+/// Potential energy of the springs, Σ ½ k x² + ¼ k3 x⁴ (torsion springs: Σ ½ k x²), and of stops \[J\].
 pub fn potential<S: Scalar>(model: &Model<S>, motions: &[BodyMotion<S>]) -> S {
     let mut sum = S::zero();
     for_each_load(model, motions, |_, kind, at| {

@@ -1,14 +1,17 @@
 //! The transposed derivative of the power ψᵀf of each kind of load.
 
-use super::Acting;
 use super::power::{SLIDE, SpringLength, angle, may_meet, stretch, tanh, turn_rate};
+use super::{Acting, stop};
 use crate::math::{Scalar, Vec3};
-use crate::model::{Axes, DegreeOfFreedom, LoadKind};
+use crate::model::{Axes, ConstraintRow, DegreeOfFreedom, LoadKind};
 use crate::system::bodies::BodyMotion;
 use crate::system::constraint::{self, SideCotangent};
 use crate::system::marker::{self, MarkerKinematics};
 use crate::system::rows::RowCotangent;
 use crate::system::side::JointSide;
+
+/// Most scalars of a load: a contact has as many.
+pub(super) const SCALARS: usize = 8;
 
 /// Derivatives of the power (or energy) of a load.
 pub(super) struct Pulled<S> {
@@ -20,7 +23,7 @@ pub(super) struct Pulled<S> {
     pub direction: Vec3<S>,
     /// In the scalars of the load, in the order of its definition. For a force or torque the first
     /// is the magnitude.
-    pub scalars: [S; 4],
+    pub scalars: [S; SCALARS],
 }
 
 impl<S: Scalar> Pulled<S> {
@@ -29,8 +32,13 @@ impl<S: Scalar> Pulled<S> {
             a: SideCotangent::fixed(),
             b: SideCotangent::fixed(),
             direction: Vec3::zeros(),
-            scalars: [S::zero(); 4],
+            scalars: [S::zero(); SCALARS],
         }
+    }
+
+    /// Sets the first scalars.
+    pub(super) fn set_scalars<const N: usize>(&mut self, scalars: [S; N]) {
+        self.scalars[..N].copy_from_slice(&scalars);
     }
 }
 
@@ -129,12 +137,12 @@ pub(super) fn pull<S: Scalar>(
             pull_rate(&virtually, &now, (S::zero(), -tension), &mut out);
             hold_virtual(&mut out);
             pull_rate(at, &now, (by_length, -(*damping * virtual_rate)), &mut out);
-            out.scalars = [
+            out.set_scalars([
                 -by_length,
                 -(x * virtual_rate),
                 -(x * x * x * virtual_rate),
                 -(now.rate * virtual_rate),
-            ];
+            ]);
         }
         LoadKind::TorsionSpring {
             rest_angle,
@@ -189,12 +197,17 @@ pub(super) fn pull<S: Scalar>(
             out.b.theta = (wb.cross(&yb) + pb.cross(&xb)) * c;
             out.b.omega = yb * c;
         }
+        LoadKind::JointStop { .. } | LoadKind::DistanceStop { .. } => {
+            if let Some(stop) = stop::of(kind) {
+                stop.pull(at, &virtually, &mut out);
+            }
+        }
         LoadKind::Distributed(_) => {}
     }
     out
 }
 
-/// Derivatives of `weight` times a load's potential energy; `None` if it is no spring.
+/// Derivatives of `weight` times a load's potential energy; `None` if it is no spring and no stop.
 pub(super) fn pull_potential<S: Scalar>(
     kind: &LoadKind<S>,
     at: &Acting<S>,
@@ -228,6 +241,11 @@ pub(super) fn pull_potential<S: Scalar>(
             out.scalars[0] = -(weight * *stiffness * x);
             out.scalars[1] = weight * x * x * 0.5;
         }
+        LoadKind::JointStop { .. } | LoadKind::DistanceStop { .. } => {
+            if let Some(stop) = stop::of(kind) {
+                stop.pull_potential(at, weight, &mut out);
+            }
+        }
         LoadKind::Force { .. }
         | LoadKind::Torque { .. }
         | LoadKind::Distributed(_)
@@ -239,7 +257,7 @@ pub(super) fn pull_potential<S: Scalar>(
 }
 
 /// Clears the derivatives in velocities, because the virtual ones are constant.
-fn hold_virtual<S: Scalar>(out: &mut Pulled<S>) {
+pub(super) fn hold_virtual<S: Scalar>(out: &mut Pulled<S>) {
     for side in [&mut out.a, &mut out.b] {
         (side.velocity, side.omega) = (Vec3::zeros(), Vec3::zeros());
     }
@@ -293,12 +311,12 @@ fn pull_meeting<S: Scalar>(
     pull_point(&at.a, [by_d, zero], &mut out.a);
     pull_point(&at.b, [-by_d, zero], &mut out.b);
     let along = now.direction.dot(&w);
-    out.scalars = [
+    out.set_scalars([
         (k + k3 * square * 3.0) * along,
         -power,
         -(square * power),
         -(now.rate * along),
-    ];
+    ]);
     out
 }
 
@@ -386,7 +404,17 @@ pub(super) fn pull_slide<S: Scalar>(at: &Acting<S>, rate: S, out: &mut Pulled<S>
         acceleration: S::zero(),
         virtual_rate: S::zero(),
     };
-    let (by_a, by_b) = constraint::pull_back(std::iter::once(SLIDE), |_| cot, &at.a, &at.b);
+    pull_row(at, SLIDE, cot, out);
+}
+
+/// Pulls the cotangents of a row back.
+pub(super) fn pull_row<S: Scalar>(
+    at: &Acting<S>,
+    row: ConstraintRow,
+    cot: RowCotangent<S>,
+    out: &mut Pulled<S>,
+) {
+    let (by_a, by_b) = constraint::pull_back(std::iter::once(row), |_| cot, &at.a, &at.b);
     out.a.add(&by_a);
     out.b.add(&by_b);
 }
