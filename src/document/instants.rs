@@ -78,9 +78,11 @@ pub enum Instant {
     SpringForce(OfSpring),
     /// Torque by which a torsion spring turns its joint back [N m], damping included.
     SpringTorque(OfSpring),
-    /// Normal force of a stop \[N\], or the torque of one of an angle [N m]; never negative.
+    /// Normal force of a stop or contact \[N\], or the torque of a stop of an angle [N m]; never negative.
     ContactForce(OfStop),
-    /// How deep a stop is entered [m or rad]; negative before it, to the nearer limit.
+    /// Size of the friction of a contact \[N\].
+    ContactFriction(OfStop),
+    /// How deep a stop or contact is entered [m or rad]; negative before it, to the nearer limit.
     Penetration(OfStop),
     /// Range of a projectile that is released at this instant \[m\].
     Range(Range),

@@ -48,7 +48,7 @@ pub struct OfSpring {
     pub load: String,
 }
 
-/// A stop.
+/// A stop or contact.
 #[derive(Clone, Debug, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 pub struct OfStop {

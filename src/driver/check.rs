@@ -266,6 +266,10 @@ fn size_of_instant(at: &Evaluated, instant: &Instant<f64>) -> f64 {
             (LoadPart::PenetrationAngle, _) => 1.0,
             (LoadPart::NormalForce, LoadKind::JointStop { law, .. })
             | (LoadPart::NormalForce, LoadKind::DistanceStop { law, .. }) => law.stiffness * length,
+            (LoadPart::NormalForce, LoadKind::Contact(own)) => own.law.stiffness * length,
+            (LoadPart::Friction, LoadKind::Contact(own)) => {
+                own.friction * own.law.stiffness * length
+            }
             (LoadPart::NormalTorque, LoadKind::JointStop { law, .. }) => law.stiffness,
             _ => length,
         },

@@ -5,15 +5,16 @@ use super::placement::{Assembly, GROUND};
 use crate::math::scalar::unit;
 use crate::math::{Scalar, Vec3};
 use crate::model::{
-    Axes, DegreeOfFreedom, DistributedLoad, Load, LoadKind, NormalLaw, Smoothness, Spread,
-    TimeFunction,
+    Axes, Contact, DegreeOfFreedom, DistributedLoad, Load, LoadKind, NormalLaw, Smoothness, Spread,
+    Surface, TimeFunction,
 };
 use crate::prepared::Prepared;
 use crate::quantity::Vector;
 use crate::schema::Document;
 use crate::schema::joints::{Ends, Joint};
 use crate::schema::loads::{
-    Axes as WrittenAxes, Interpolation, Load as WrittenLoad, Motion, Stop, TimeFunction as Written,
+    Axes as WrittenAxes, Contact as WrittenContact, Interpolation, Load as WrittenLoad, Motion,
+    Stop, Surface as WrittenSurface, TimeFunction as Written,
 };
 use crate::structures::loads::edge_shares;
 use crate::structures::mesh::Edge;
@@ -113,6 +114,7 @@ fn kind<S: Scalar>(
             }
         }
         WrittenLoad::Stop(stop) => stop_of(document, assembly, stop),
+        WrittenLoad::Contact(contact) => LoadKind::Contact(contact_of(assembly, contact)),
         WrittenLoad::Pressure(load) => {
             let own = elements(document, &load.body);
             let shells = own.sets.face_sets[&load.faces].as_slice().into();
@@ -196,6 +198,42 @@ fn stop_of<S: Scalar>(document: &Document, assembly: &Assembly<S>, stop: &Stop) 
             }
         }
         (None, ..) => unreachable!("what a stop stops is checked when a problem is read"),
+    }
+}
+
+fn contact_of<S: Scalar>(assembly: &Assembly<S>, contact: &WrittenContact) -> Contact<S> {
+    let get = |quantity: &crate::quantity::Quantity| assembly.quantity(quantity);
+    let ends = ends(assembly, &contact.between, &contact.at);
+    let turn = assembly.pose(&contact.between[1]).rotation;
+    let in_body = |direction: &Vector| turn.tr_mul(&assembly.ground(direction));
+    let friction = contact.friction.as_ref();
+    Contact {
+        body_a: ends.body_a,
+        body_b: ends.body_b,
+        point_a: ends.point_a,
+        radius: get(&contact.radius),
+        point_b: ends.point_b,
+        surface: match &contact.surface {
+            WrittenSurface::Plane { normal } => Surface::Plane {
+                normal: unit(in_body(normal)),
+            },
+            WrittenSurface::Sphere { radius } => Surface::Sphere {
+                radius: get(radius),
+            },
+            WrittenSurface::Capsule { half, radius } => Surface::Capsule {
+                half: in_body(half),
+                radius: get(radius),
+            },
+        },
+        law: NormalLaw {
+            exponent: contact.exponent,
+            stiffness: get(&contact.stiffness),
+            dissipation: get(&contact.dissipation),
+            width: get(&contact.width),
+        },
+        friction: friction.map_or(S::zero(), |own| get(&own.coefficient)),
+        // Without friction any width will do.
+        slip: friction.map_or(S::one(), |own| get(&own.width)),
     }
 }
 

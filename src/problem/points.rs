@@ -349,6 +349,20 @@ pub(super) fn beside(problem: &Problem) -> Option<Finding> {
                     Some(turned(join(&pointer, "body"), &torque.body, "a torque on"))
                 }
                 Load::Spring(spring) => ends(&pointer, &spring.between, &spring.at),
+                Load::Contact(own) => ends(&pointer, &own.between, &own.at).or_else(|| {
+                    let sides = own.between.iter();
+                    let body = sides
+                        .zip([own.radius.value > 0.0, true])
+                        .find(|(body, _)| is_point(body));
+                    let (body, extends) = body?;
+                    (own.friction.is_some() && extends).then(|| {
+                        turned(
+                            join(&pointer, "between"),
+                            body,
+                            "friction at the surface of",
+                        )
+                    })
+                }),
                 Load::Stop(stop) => ends(&pointer, stop.between.as_ref()?, stop.at.as_ref()?),
                 Load::Damping(damping) => {
                     let joint = written.joints.get(&damping.joint)?;

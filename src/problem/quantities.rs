@@ -226,6 +226,7 @@ impl<S: Scalar> FunctionBuilder<'_, S> {
                 true => self.of_load(&of.load, LoadPart::NormalTorque),
                 false => self.of_load(&of.load, LoadPart::NormalForce),
             },
+            I::ContactFriction(of) => self.of_load(&of.load, LoadPart::Friction),
             I::Penetration(of) => match self.stops_angle(&of.load) {
                 true => self.of_load(&of.load, LoadPart::PenetrationAngle),
                 false => self.of_load(&of.load, LoadPart::Penetration),

@@ -13,7 +13,8 @@ use flexbody_mathematics::math::{Complex64, Parameters, Scalar};
 use flexbody_mechanics::integrate::implicit::ggl::{Equations, StepState};
 use flexbody_mechanics::model::Interpolation;
 use flexbody_mechanics::model::{
-    Axes, DegreeOfFreedom, JointKind, Load, LoadKind, Model, NormalLaw, Smoothness, TimeFunction,
+    Axes, Contact, DegreeOfFreedom, JointKind, Load, LoadKind, Model, NormalLaw, Smoothness,
+    Surface, TimeFunction,
 };
 use flexbody_mechanics::system::InMotion;
 use flexbody_mechanics::system::initial;
@@ -113,6 +114,63 @@ fn kinds(body_b: Option<usize>, numbers: &mut Numbers) -> Vec<(JointKind, LoadKi
     };
     all.push((Spherical, ball));
     all.extend(stops(body_b, numbers));
+    all.extend(contacts(body_b, numbers));
+    all
+}
+
+/// Contacts with every surface: deep and within the onset, sliding and nearly sticking, of spheres and points.
+fn contacts(body_b: Option<usize>, numbers: &mut Numbers) -> Vec<(JointKind, LoadKind<f64>)> {
+    let half = numbers.vector();
+    let mut all = Vec::new();
+    for (exponent, width, friction, slip) in [
+        (1.0, 0.3, 0.4, 0.02),
+        (1.5, 0.3, 0.7, 30.0),
+        (1.5, 40.0, 0.5, 0.5),
+        (1.0, 0.3, 0.0, 1.0),
+    ] {
+        for (radius, surface) in [
+            (
+                20.0,
+                Surface::Plane {
+                    normal: numbers.vector().normalize(),
+                },
+            ),
+            (6.0, Surface::Sphere { radius: 4.0 }),
+            (0.0, Surface::Sphere { radius: 11.0 }),
+            (
+                6.0,
+                Surface::Capsule {
+                    half: half * 30.0,
+                    radius: 5.0,
+                },
+            ),
+            (
+                6.0,
+                Surface::Capsule {
+                    half: half * 1e-3,
+                    radius: 5.0,
+                },
+            ),
+        ] {
+            let contact = Contact {
+                body_a: 1,
+                body_b,
+                point_a: numbers.vector(),
+                radius,
+                point_b: numbers.vector(),
+                surface,
+                law: NormalLaw {
+                    exponent,
+                    stiffness: 0.3,
+                    dissipation: 0.1,
+                    width,
+                },
+                friction,
+                slip,
+            };
+            all.push((JointKind::Spherical, LoadKind::Contact(contact)));
+        }
+    }
     all
 }
 
@@ -299,9 +357,12 @@ fn potentials() {
         agree(&case, "energy by parameters", &parameters(&cot), &exact);
         if matches!(
             case.model.loads[0].kind,
-            LoadKind::Spring { .. } | LoadKind::JointStop { .. } | LoadKind::DistanceStop { .. }
+            LoadKind::Spring { .. }
+                | LoadKind::JointStop { .. }
+                | LoadKind::DistanceStop { .. }
+                | LoadKind::Contact(_)
         ) {
-            // At rest, the force of a spring or a stop is minus the derivative of its energy.
+            // At rest, the force of a spring, a stop or a contact is minus the derivative of its energy.
             let still = forces(&case, &case.model, &case.q, &[0.0; 12], TIME);
             let down: Vec<f64> = y.iter().map(|y| -y / 0.7).collect();
             agree(&case, "force from energy", &still, &down);

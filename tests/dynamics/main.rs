@@ -12,6 +12,7 @@ mod allocations;
 mod checkpoints;
 mod conserves;
 mod constraint_derivatives;
+mod contacts;
 mod counted_turns;
 mod dead_points;
 mod distributed_loads;

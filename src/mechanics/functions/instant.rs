@@ -210,7 +210,7 @@ pub enum Instant<S> {
     },
     /// Displacement of body A of a joint against body B along its axis \[m\].
     Slide(usize),
-    /// Quantity of a spring or a stop, such as its force.
+    /// Quantity of a spring, a stop or a contact, such as its force.
     Load(LoadMeasure),
     /// Rotation of a body about an axis, continuous in time \[rad\]. At t = 0 it has the turns of a joint's start, or is in
     /// (−2π, 2π].
@@ -289,7 +289,7 @@ impl<S: Scalar> Instant<S> {
             Instant::Load(measure) => match measure.part {
                 LoadPart::Length | LoadPart::Penetration => "m",
                 LoadPart::PenetrationAngle => "rad",
-                LoadPart::Tension | LoadPart::NormalForce => "N",
+                LoadPart::Tension | LoadPart::NormalForce | LoadPart::Friction => "N",
                 LoadPart::Torque | LoadPart::NormalTorque => "N m",
             },
             Instant::Rotation(_) => "rad",
@@ -351,6 +351,7 @@ impl<S: Scalar> Instant<S> {
                 LoadPart::Penetration | LoadPart::PenetrationAngle => "penetration",
                 LoadPart::NormalForce => "contact force",
                 LoadPart::NormalTorque => "contact torque",
+                LoadPart::Friction => "friction",
             },
             Instant::Rotation(_) => "rotation",
             Instant::Range { .. } => "range",

@@ -245,7 +245,8 @@ fn vibration(model: &Model<f64>, load: &LoadKind<f64>) -> Option<(f64, f64)> {
         | LoadKind::Friction { .. }
         // They vibrate only while they touch, where the error of the steps sees it.
         | LoadKind::JointStop { .. }
-        | LoadKind::DistanceStop { .. } => return None,
+        | LoadKind::DistanceStop { .. }
+        | LoadKind::Contact(_) => return None,
     };
     let omega = (stiffness * inverse).sqrt();
     (omega > 0.0).then(|| (omega, 0.5 * damping * omega / stiffness))

@@ -256,6 +256,7 @@ impl Ledger {
                 DegreeOfFreedom::Translation => stored(law, scale.length),
             },
             LoadKind::DistanceStop { law, .. } => stored(law, scale.length),
+            LoadKind::Contact(own) => stored(&own.law, scale.length),
             LoadKind::Force { .. }
             | LoadKind::Distributed(_)
             | LoadKind::Torque { .. }

@@ -309,6 +309,12 @@ impl Plane {
                     let e = &joint.frame_a.axes[2];
                     examiner.vanishes((e - n * n.dot(e)).as_slice(), 1.0, what);
                 }
+                LoadKind::Contact(own) => {
+                    if let Some(direction) = own.surface.direction() {
+                        let n = turned.normal(own.body_b);
+                        examiner.zero(n.dot(direction), largest(direction), what);
+                    }
+                }
                 // Flexible bodies that carry it have no plane but by chance, which is not looked for.
                 LoadKind::Distributed(_) => examiner.zero(S::one(), 1.0, what),
                 LoadKind::Spring { .. }

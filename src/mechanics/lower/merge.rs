@@ -250,6 +250,15 @@ fn move_load<S: Scalar>(kind: &mut LoadKind<S>, on_host: &[Option<Pose<S>>]) {
                 moved(body, point_b);
             }
         }
+        LoadKind::Contact(own) => {
+            moved(&mut own.body_a, &mut own.point_a);
+            if let Some(body) = &mut own.body_b {
+                if let Some(pose) = &on_host[*body] {
+                    own.surface.turn(|direction| pose.turn * direction);
+                }
+                moved(body, &mut own.point_b);
+            }
+        }
         LoadKind::TorsionSpring { .. }
         | LoadKind::Damping { .. }
         | LoadKind::BallDamping { .. }

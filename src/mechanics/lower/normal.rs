@@ -131,6 +131,13 @@ fn vectors(model: &Model<f64>) -> (Vec<Vec3<f64>>, Vec<Vec3<f64>>) {
                 inside.push(at(*body_a, point_a) - b);
                 inside.push(turn(*body_a) * point_a);
             }
+            LoadKind::Contact(own) => {
+                let (of_a, of_b) = (turn(own.body_a), own.body_b.map(turn));
+                inside.push(of_a * own.point_a);
+                if let Some(direction) = own.surface.direction() {
+                    inside.push(of_b.map_or(*direction, |turn| turn * direction));
+                }
+            }
             LoadKind::Force {
                 body,
                 direction,

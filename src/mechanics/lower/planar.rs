@@ -329,6 +329,10 @@ pub(super) fn points<S: Scalar>(kind: &LoadKind<S>) -> [Option<(Option<usize>, V
             point_b,
             ..
         } => [Some((Some(*body_a), *point_a)), Some((*body_b, *point_b))],
+        LoadKind::Contact(own) => [
+            Some((Some(own.body_a), own.point_a)),
+            Some((own.body_b, own.point_b)),
+        ],
         LoadKind::Torque { .. }
         | LoadKind::TorsionSpring { .. }
         | LoadKind::Damping { .. }

@@ -95,6 +95,16 @@ pub(super) fn holds<S: Scalar>(
                     vanishes(Some(point_b), &turns);
                 }
             }
+            LoadKind::Contact(own) => {
+                // Friction turns a sphere; a point only if it is off the centre of mass.
+                let slides = own.friction.is_zero() || own.radius.is_zero();
+                if is(own.body_a) {
+                    vanishes(slides.then_some(&own.point_a), &turns);
+                }
+                if own.body_b.is_some_and(is) {
+                    vanishes(None, &turns);
+                }
+            }
             LoadKind::TorsionSpring { joint, .. }
             | LoadKind::Damping { joint, .. }
             | LoadKind::BallDamping { joint, .. }

@@ -168,6 +168,7 @@ fn ends<S>(load: &Load<S>, model: &Model<S>) -> [Option<usize>; 2] {
         LoadKind::Spring { body_a, body_b, .. } | LoadKind::DistanceStop { body_a, body_b, .. } => {
             [Some(body_a), body_b]
         }
+        LoadKind::Contact(ref own) => [Some(own.body_a), own.body_b],
         LoadKind::TorsionSpring { joint, .. }
         | LoadKind::Damping { joint, .. }
         | LoadKind::BallDamping { joint, .. }
@@ -207,6 +208,10 @@ fn leave_out<S: Scalar>(model: &mut Model<S>, number: &[Option<usize>]) -> [Vec<
             | LoadKind::DistanceStop { body_a, body_b, .. } => {
                 new(body_a);
                 body_b.iter_mut().for_each(new);
+            }
+            LoadKind::Contact(own) => {
+                new(&mut own.body_a);
+                own.body_b.iter_mut().for_each(new);
             }
             LoadKind::TorsionSpring { joint, counter, .. }
             | LoadKind::JointStop { joint, counter, .. } => {

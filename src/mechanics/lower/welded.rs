@@ -136,10 +136,20 @@ impl Welded {
                 }
             }
             for load in &model.loads {
-                if let LoadKind::Spring { body_a, body_b, .. }
-                | LoadKind::DistanceStop { body_a, body_b, .. } = load.kind
-                    && links([Some(body_a), body_b])
-                {
+                let pair = match &load.kind {
+                    LoadKind::Spring { body_a, body_b, .. }
+                    | LoadKind::DistanceStop { body_a, body_b, .. } => [Some(*body_a), *body_b],
+                    LoadKind::Contact(own) => [Some(own.body_a), own.body_b],
+                    LoadKind::Force { .. }
+                    | LoadKind::Torque { .. }
+                    | LoadKind::TorsionSpring { .. }
+                    | LoadKind::Damping { .. }
+                    | LoadKind::BallDamping { .. }
+                    | LoadKind::Friction { .. }
+                    | LoadKind::JointStop { .. }
+                    | LoadKind::Distributed(_) => continue,
+                };
+                if links(pair) {
                     let name = &load.name;
                     obstacles.push(ViolatedCondition::plain(format!(
                         "load \"{name}\" joins them too"
@@ -209,10 +219,8 @@ impl Welded {
 /// Loads that act through a joint, and functions that observe its reaction. They prevent its removal.
 fn loads_on(scene: &Scene<f64>, joint: usize) -> Vec<ViolatedCondition> {
     let model = &scene.model;
-    let mut loads = model.loads.iter();
-    let loads = loads
-        .by_ref()
-        .filter(|load| load.kind.joint() == Some(joint));
+    let loads = model.loads.iter();
+    let loads = loads.filter(|load| load.kind.joint() == Some(joint));
     let told =
         loads.map(|load| ViolatedCondition::plain(format!("load \"{}\" acts on it", load.name)));
     let mut all: Vec<ViolatedCondition> = told.collect();

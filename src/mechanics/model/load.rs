@@ -1,4 +1,4 @@
-//! Loads: forces and torques on bodies, springs, dampers, friction and stops.
+//! Loads: forces and torques on bodies, springs, dampers, friction, stops and contacts.
 //!
 //! Let m(t) be a [`TimeFunction`], d = P_A − P_B the vector between two points, l = √(dᵀd), e the
 //! axis of a joint, φ the angle of its body A relative to body B about e, s = e · d its
@@ -16,10 +16,11 @@
 //! distance stop      F = (N(l_l − l, −l̇) − N(l − l_u, l̇)) d / l
 //! ```
 //!
-//! and by the opposite on body B, so momentum is conserved. N(δ, δ̇) is the [`NormalLaw`] of a stop at a lower (l) or upper (u) limit. Loads that are spread over the elements of a flexible body
-//! have a file of their own ([`super::distributed`]). Forces and their derivatives are in `system::loads`.
+//! and by the opposite on body B, so momentum is conserved. N(δ, δ̇) is the [`NormalLaw`] of a stop at a lower (l) or upper (u) limit. Contacts, and loads that are spread over the elements of a flexible body,
+//! have files of their own ([`super::contact`], [`super::distributed`]). Forces and their derivatives are in `system::loads`.
 
 use super::axes::Axes;
+use super::contact::Contact;
 use super::distributed::DistributedLoad;
 use super::drive::DegreeOfFreedom;
 use super::normal_law::NormalLaw;
@@ -152,6 +153,8 @@ pub enum LoadKind<S> {
         /// The normal law of both.
         law: NormalLaw<S>,
     },
+    /// A contact of a sphere or point with a surface.
+    Contact(Contact<S>),
     /// A pressure or a dead load on the elements of a flexible body.
     Distributed(DistributedLoad<S>),
 }
@@ -168,6 +171,7 @@ parameters!(enum LoadKind {
     Friction { joint, dof; size, width },
     JointStop { joint, dof, counter; limits, law },
     DistanceStop { body_a, body_b; point_a, point_b, limits, law },
+    Contact(; contact),
     Distributed(; load),
 });
 
@@ -185,7 +189,8 @@ impl<S: Scalar> LoadKind<S> {
             | LoadKind::BallDamping { .. }
             | LoadKind::Friction { .. }
             | LoadKind::JointStop { .. }
-            | LoadKind::DistanceStop { .. } => None,
+            | LoadKind::DistanceStop { .. }
+            | LoadKind::Contact(_) => None,
         }
     }
 }
@@ -203,6 +208,7 @@ impl<S> LoadKind<S> {
             | LoadKind::Torque { .. }
             | LoadKind::Spring { .. }
             | LoadKind::DistanceStop { .. }
+            | LoadKind::Contact(_)
             | LoadKind::Distributed(_) => None,
         }
     }
@@ -220,6 +226,7 @@ impl<S> LoadKind<S> {
             | LoadKind::BallDamping { .. }
             | LoadKind::Friction { .. }
             | LoadKind::DistanceStop { .. }
+            | LoadKind::Contact(_)
             | LoadKind::Distributed(_) => None,
         }
     }

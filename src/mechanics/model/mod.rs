@@ -5,6 +5,7 @@
 //! each parameter.
 
 pub mod axes;
+pub mod contact;
 pub mod distributed;
 pub mod drive;
 pub mod element_operators;
@@ -22,6 +23,7 @@ pub mod table;
 pub mod time_function;
 
 pub use axes::Axes;
+pub use contact::{Contact, Surface};
 pub use distributed::{DistributedLoad, Spread};
 pub use drive::{DegreeOfFreedom, Drive};
 pub use flexible::{FlexibleBody, Form, Inertia, Modes};
@@ -78,6 +80,7 @@ impl<S: Scalar> Model<S> {
             LoadKind::JointStop { law, .. } | LoadKind::DistanceStop { law, .. } => {
                 law.dissipation.re() == 0.0
             }
+            LoadKind::Contact(own) => own.law.dissipation.re() == 0.0 && own.friction.re() == 0.0,
             // They are judged as what feeds the motion.
             LoadKind::Force { .. } | LoadKind::Torque { .. } | LoadKind::Distributed(_) => true,
         };

@@ -8,7 +8,7 @@ use crate::placement::GROUND;
 use crate::pointer::{advice, join};
 use crate::quantity::Quantity;
 use crate::schema::joints::Ends;
-use crate::schema::loads::{Load, Motion, Stop, TimeFunction};
+use crate::schema::loads::{Contact, Load, Motion, Stop, Surface, TimeFunction};
 use crate::schema::measured::JointReaction;
 
 impl Checker<'_> {
@@ -98,6 +98,7 @@ impl Checker<'_> {
                 self.joint_motion(pointer, &friction.joint, friction.motion);
             }
             Load::Stop(stop) => self.stop(pointer, stop),
+            Load::Contact(contact) => self.contact(pointer, contact),
             Load::Pressure(load) => {
                 self.loaded_elements(pointer, &load.body, ("faces", &load.faces));
                 self.course(&join(pointer, "pressure"), load.pressure.parts());
@@ -187,6 +188,7 @@ impl Checker<'_> {
             | Load::Damping(_)
             | Load::Friction(_)
             | Load::Stop(_)
+            | Load::Contact(_)
             | Load::Pressure(_)
             | Load::Area(_)
             | Load::Edge(_)
@@ -257,10 +259,44 @@ impl Checker<'_> {
         }
     }
 
-    /// Checks that a load is a stop.
-    pub(super) fn stop_of(&mut self, pointer: &str, name: &str) {
+    /// Checks a contact: its bodies and its surface.
+    fn contact(&mut self, pointer: &str, contact: &Contact) {
+        let list = join(pointer, "between");
+        self.between(&list, &contact.between);
+        if contact.between[0] == GROUND && contact.between[1] != GROUND {
+            let expected =
+                "the body with the sphere or point; ground comes second, with the surface";
+            self.fault(Finding::new(join(&list, 0), "\"ground\"", expected));
+        }
+        if let Ends::Each(pair) = &contact.at {
+            self.pair(&join(pointer, "at"), &contact.between, pair);
+        }
+        let place = join(pointer, "surface");
+        match &contact.surface {
+            Surface::Plane { normal } => {
+                self.direction(&join(&join(&place, "plane"), "normal"), normal);
+            }
+            Surface::Sphere { radius } => {
+                if radius.value == 0.0 && contact.radius.value == 0.0 {
+                    let expected = "a radius of one of them, as two points do not meet";
+                    let radius = join(&join(&place, "sphere"), "radius");
+                    self.fault(Finding::new(radius, "a point against a point", expected));
+                }
+            }
+            Surface::Capsule { half, .. } => {
+                self.direction(&join(&join(&place, "capsule"), "half"), half);
+            }
+        }
+    }
+
+    /// Checks that a load is a stop or a contact.
+    pub(super) fn stop_of(&mut self, pointer: &str, name: &str, friction: bool) {
         let loads = &self.document.loads;
-        let fits = |load: &Load| matches!(load, Load::Stop(_));
+        let fits = |load: &Load| match load {
+            Load::Stop(_) => !friction,
+            Load::Contact(_) => true,
+            _ => false,
+        };
         if loads.get(name).is_some_and(fits) || self.damage.holds("loads", name) {
             return;
         }
@@ -270,7 +306,10 @@ impl Checker<'_> {
             true => Some("there is none".to_owned()),
             false => advice(name, "such loads", names),
         };
-        let expected = "the name of a load that is a stop";
+        let expected = match friction {
+            true => "the name of a load that is a contact",
+            false => "the name of a load that is a stop or contact",
+        };
         let place = join(pointer, "load");
         self.fault(Finding::new(place, format!("\"{name}\""), expected).hint(hint));
     }

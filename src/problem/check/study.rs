@@ -265,10 +265,13 @@ impl Checker<'_> {
                 self.spring(&join(pointer, "spring_torque"), &of.load, true);
             }
             Instant::ContactForce(of) => {
-                self.stop_of(&join(pointer, "contact_force"), &of.load);
+                self.stop_of(&join(pointer, "contact_force"), &of.load, false);
+            }
+            Instant::ContactFriction(of) => {
+                self.stop_of(&join(pointer, "contact_friction"), &of.load, true);
             }
             Instant::Penetration(of) => {
-                self.stop_of(&join(pointer, "penetration"), &of.load);
+                self.stop_of(&join(pointer, "penetration"), &of.load, false);
             }
             Instant::Rotation(rotation) => {
                 let pointer = join(pointer, "rotation");

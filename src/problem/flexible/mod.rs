@@ -397,6 +397,12 @@ impl<S: Scalar> FlexibleBodies<S> {
                         self.move_place(model, load, body, point_b);
                     }
                 }
+                LoadKind::Contact(own) => {
+                    self.move_place(model, load, &mut own.body_a, &mut own.point_a);
+                    if let Some(body) = &mut own.body_b {
+                        self.move_place(model, load, body, &mut own.point_b);
+                    }
+                }
                 LoadKind::Torque { body, .. } => {
                     if let Load::Torque(torque) = written
                         && let Some(point) = &torque.point

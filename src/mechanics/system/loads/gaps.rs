@@ -1,6 +1,6 @@
-//! How near the stops of a scene are: penetrations with their rates, for the control of steps.
+//! How near the stops and contacts of a scene are: penetrations with their rates, for the control of steps.
 
-use super::{for_each_load, stop};
+use super::{contact, for_each_load, stop};
 use crate::math::Scalar;
 use crate::model::{LoadKind, Model};
 use crate::system::bodies::BodyMotion;
@@ -24,7 +24,7 @@ const FELT: f64 = 0.25;
 /// Whether a load presses only behind a limit.
 pub fn may_touch<S>(kind: &LoadKind<S>) -> bool {
     match kind {
-        LoadKind::JointStop { .. } | LoadKind::DistanceStop { .. } => true,
+        LoadKind::JointStop { .. } | LoadKind::DistanceStop { .. } | LoadKind::Contact(_) => true,
         LoadKind::Force { .. }
         | LoadKind::Torque { .. }
         | LoadKind::Spring { .. }
@@ -49,6 +49,15 @@ pub fn gaps<S: Scalar>(model: &Model<S>, motions: &[BodyMotion<S>], out: &mut Ve
                     rate,
                     onset,
                 });
+            });
+        }
+        if let LoadKind::Contact(own) = kind {
+            let [penetration, rate] = contact::gap(own, at);
+            out.push(Gap {
+                load,
+                penetration,
+                rate,
+                onset: -FELT * own.law.width.re(),
             });
         }
     });

@@ -1,10 +1,10 @@
-//! Quantities of springs and stops for functions, with their derivatives.
+//! Quantities of springs, stops and contacts for functions, with their derivatives.
 
 use super::power::{angle, stretch, tension, torsion, turn_rate};
 use super::pull::{Pulled, pull_angle, pull_rate, pull_turn};
-use super::{Acting, for_each_load, give_to_parameters, give_to_states, stop};
+use super::{Acting, contact, for_each_load, give_to_parameters, give_to_states, stop};
 use crate::math::Scalar;
-use crate::model::LoadKind;
+use crate::model::{Contact, LoadKind};
 use crate::system::InMotion;
 use crate::system::joints::JointCotangent;
 
@@ -17,14 +17,16 @@ pub enum LoadPart {
     Tension,
     /// The torque by which a torsion spring turns its joint back, damping included \[N m\].
     Torque,
-    /// How deep a stop is entered; negative before it \[m\].
+    /// How deep a stop or a contact is entered; negative before it \[m\].
     Penetration,
     /// The same of the stop of an angle \[rad\].
     PenetrationAngle,
-    /// Normal force of a stop, never negative \[N\].
+    /// Normal force of a stop or a contact, never negative \[N\].
     NormalForce,
     /// The same of the stop of an angle \[N m\].
     NormalTorque,
+    /// Size of the friction of a contact \[N\].
+    Friction,
 }
 
 /// A measure of a load.
@@ -57,10 +59,15 @@ fn of<S: Scalar>(kind: &LoadKind<S>, at: &Acting<S>, part: LoadPart) -> S {
             tension(&stretch(at, law), law)
         }
         LoadPart::Torque => torsion(at, torsion_spring(kind)),
-        LoadPart::Penetration | LoadPart::PenetrationAngle => {
-            stop::of(kind).expect(CHECKED).penetration(at)
-        }
-        LoadPart::NormalForce | LoadPart::NormalTorque => stop::of(kind).expect(CHECKED).normal(at),
+        LoadPart::Penetration | LoadPart::PenetrationAngle => match kind {
+            LoadKind::Contact(own) => contact::penetration(own, at),
+            _ => stop::of(kind).expect(CHECKED).penetration(at),
+        },
+        LoadPart::NormalForce | LoadPart::NormalTorque => match kind {
+            LoadKind::Contact(own) => contact::normal(own, at),
+            _ => stop::of(kind).expect(CHECKED).normal(at),
+        },
+        LoadPart::Friction => contact::tangential(touching(kind), at),
     }
 }
 
@@ -77,6 +84,14 @@ fn spring<S: Scalar>(kind: &LoadKind<S>) -> [S; 4] {
         unreachable!("{CHECKED}")
     };
     [*rest_length, *stiffness, *cubic, *damping]
+}
+
+/// The contact that a load is.
+fn touching<S>(kind: &LoadKind<S>) -> &Contact<S> {
+    let LoadKind::Contact(own) = kind else {
+        unreachable!("{CHECKED}")
+    };
+    own
 }
 
 /// Rest angle, k and c of a torsion spring.
@@ -135,10 +150,19 @@ fn pull(kind: &LoadKind<f64>, at: &Acting<f64>, part: LoadPart, weight: f64) -> 
             ]);
         }
         LoadPart::Penetration | LoadPart::PenetrationAngle => {
+            if let LoadKind::Contact(own) = kind {
+                contact::pull_penetration(own, at, weight, &mut out);
+                return out;
+            }
             let stop = stop::of(kind).expect(CHECKED);
             stop.pull_penetration(at, weight, &mut out);
         }
+        LoadPart::Friction => contact::pull_tangential(touching(kind), at, weight, &mut out),
         LoadPart::NormalForce | LoadPart::NormalTorque => {
+            if let LoadKind::Contact(own) = kind {
+                contact::pull_normal(own, at, weight, &mut out);
+                return out;
+            }
             stop::of(kind)
                 .expect(CHECKED)
                 .pull_normal(at, weight, &mut out);

@@ -2,9 +2,11 @@
 //!
 //! For virtual velocities ψ, ψᵀf is the power of a load, linear in ψ. `power.rs` has the forces and
 //! `pull.rs` the transposed derivative of the power, once for each kind and for any scalar. Forces,
-//! Jacobians and pull-backs all use these two, so they agree. Stops have both in `stop.rs`, and their law in `normal_law.rs`. Loads that are spread over the elements of a
+//! Jacobians and pull-backs all use these two, so they agree. Stops have both in `stop.rs`, contacts in
+//! `contact.rs`, and their law is in `normal_law.rs`. Loads that are spread over the elements of a
 //! flexible body act on its coordinates too: `distributed.rs` has all of theirs.
 
+mod contact;
 mod distributed;
 pub mod gaps;
 pub mod measured;
@@ -79,6 +81,10 @@ fn for_each_load<S: Scalar>(
                 point_b,
                 ..
             } => acting((*body_a, at(point_a)), (*body_b, at(point_b))),
+            LoadKind::Contact(own) => {
+                let a = (own.body_a, at(&own.point_a));
+                acting(a, (own.body_b, at(&own.point_b)))
+            }
             // The angle of a spring or a stop is that of the bodies; it does not include drives.
             LoadKind::TorsionSpring { joint, counter, .. }
             | LoadKind::JointStop { joint, counter, .. } => {
@@ -157,6 +163,7 @@ fn blocks<S: Scalar>(kind: &LoadKind<S>) -> Blocks {
         },
         LoadKind::Spring { damping, .. } => of(BOTH, BOTH, damped(damping, BOTH)),
         LoadKind::TorsionSpring { damping, .. } => of(ANGULAR, ANGULAR, damped(damping, ANGULAR)),
+        LoadKind::Contact(_) => of(BOTH, BOTH, BOTH),
         LoadKind::BallDamping { .. } => of(ANGULAR, ANGULAR, ANGULAR),
         LoadKind::JointStop {
             dof: DegreeOfFreedom::Rotation,
@@ -304,7 +311,7 @@ pub fn without_length(model: &Model<f64>) -> Option<&str> {
     found.map(|i| model.loads[i].name.as_str())
 }
 
-/// Potential energy of the springs, Σ ½ k x² + ¼ k3 x⁴ (torsion springs: Σ ½ k x²), and of stops \[J\].
+/// Potential energy of the springs, Σ ½ k x² + ¼ k3 x⁴ (torsion springs: Σ ½ k x²), and of stops and contacts \[J\].
 pub fn potential<S: Scalar>(model: &Model<S>, motions: &[BodyMotion<S>]) -> S {
     let mut sum = S::zero();
     for_each_load(model, motions, |_, kind, at| {

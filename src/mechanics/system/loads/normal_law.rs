@@ -1,6 +1,6 @@
 //! The normal force of stops and contacts, its potential energy and all their derivatives.
 //!
-//! With the penetration δ, its rate δ̇, u = δ/w + ½ and b = 1 + ³⁄₂ c δ̇ (Hunt & Crossley 1975, eq. 9 and section 5):
+//! With the penetration δ, its rate δ̇, u = δ/w + ½ and b = 1 + ³⁄₂ c δ̇ (Hunt & Crossley 1975):
 //!
 //! ```text
 //! ρ(δ) = w R(u),  R = u⁶ − 3 u⁵ + ⁵⁄₂ u⁴ for 0 < u < 1;   ρ = 0 below, ρ = δ above

@@ -1,7 +1,7 @@
 //! Adds the derivatives of a load's power to the cotangents of its parameters.
 
 use super::pull::Pulled;
-use super::stop;
+use super::{contact, stop};
 use crate::model::{JointFrame, LoadKind, Model};
 
 /// Adds the derivatives in a load's parameters to the cotangent of the model, and that in time to
@@ -102,6 +102,7 @@ pub(super) fn give_to_parameters(
             *point_b += pulled.b.frame.point;
             stop::give(&pulled.scalars, limits, law);
         }
+        (LoadKind::Contact(_), LoadKind::Contact(own)) => contact::give(pulled, own),
         (LoadKind::Distributed(_), LoadKind::Distributed(_)) => {}
         (
             LoadKind::Force { .. }
@@ -113,7 +114,8 @@ pub(super) fn give_to_parameters(
             | LoadKind::BallDamping { .. }
             | LoadKind::Friction { .. }
             | LoadKind::JointStop { .. }
-            | LoadKind::DistanceStop { .. },
+            | LoadKind::DistanceStop { .. }
+            | LoadKind::Contact(_),
             _,
         ) => unreachable!("a cotangent has the kind of its load"),
     }

@@ -1,6 +1,6 @@
 //! The forces of each kind of load, and the energy of springs.
 
-use super::{Acting, stop};
+use super::{Acting, contact, stop};
 use crate::math::scalar::length;
 use crate::math::{Scalar, Vec3};
 use crate::model::{Axes, ConstraintRow, DegreeOfFreedom, LoadKind};
@@ -85,6 +85,7 @@ pub(super) fn forces<S: Scalar>(
         LoadKind::JointStop { .. } | LoadKind::DistanceStop { .. } => {
             stop::of(kind).map_or([none, none], |stop| stop.forces(at))
         }
+        LoadKind::Contact(own) => contact::forces(own, at),
         LoadKind::Distributed(_) => [none, none],
     }
 }
@@ -100,7 +101,7 @@ pub(super) fn torsion<S: Scalar>(at: &Acting<S>, [rest, k, c]: [S; 3]) -> S {
     k * angle(at, rest) + c * turn_rate(at)
 }
 
-/// Potential energy of a load \[J\]; zero if it is no spring and no stop.
+/// Potential energy of a load \[J\]; zero if it stores none.
 pub(super) fn potential<S: Scalar>(kind: &LoadKind<S>, at: &Acting<S>) -> S {
     match kind {
         LoadKind::Spring {
@@ -126,6 +127,7 @@ pub(super) fn potential<S: Scalar>(kind: &LoadKind<S>, at: &Acting<S>) -> S {
         LoadKind::JointStop { .. } | LoadKind::DistanceStop { .. } => {
             stop::of(kind).map_or(S::zero(), |stop| stop.potential(at))
         }
+        LoadKind::Contact(own) => contact::potential(own, at),
         LoadKind::Force { .. }
         | LoadKind::Torque { .. }
         | LoadKind::Distributed(_)

@@ -1,7 +1,7 @@
 //! The transposed derivative of the power ψᵀf of each kind of load.
 
 use super::power::{SLIDE, SpringLength, angle, may_meet, stretch, tanh, turn_rate};
-use super::{Acting, stop};
+use super::{Acting, contact, stop};
 use crate::math::{Scalar, Vec3};
 use crate::model::{Axes, ConstraintRow, DegreeOfFreedom, LoadKind};
 use crate::system::bodies::BodyMotion;
@@ -19,7 +19,7 @@ pub(super) struct Pulled<S> {
     pub a: SideCotangent<S>,
     /// The same for body B.
     pub b: SideCotangent<S>,
-    /// In the direction of a force or torque.
+    /// In the direction of a force or torque, or that of the surface of a contact.
     pub direction: Vec3<S>,
     /// In the scalars of the load, in the order of its definition. For a force or torque the first
     /// is the magnitude.
@@ -202,12 +202,13 @@ pub(super) fn pull<S: Scalar>(
                 stop.pull(at, &virtually, &mut out);
             }
         }
+        LoadKind::Contact(own) => contact::pull(own, at, &virtually, &mut out),
         LoadKind::Distributed(_) => {}
     }
     out
 }
 
-/// Derivatives of `weight` times a load's potential energy; `None` if it is no spring and no stop.
+/// Derivatives of `weight` times a load's potential energy; `None` if it stores none.
 pub(super) fn pull_potential<S: Scalar>(
     kind: &LoadKind<S>,
     at: &Acting<S>,
@@ -246,6 +247,7 @@ pub(super) fn pull_potential<S: Scalar>(
                 stop.pull_potential(at, weight, &mut out);
             }
         }
+        LoadKind::Contact(own) => contact::pull_potential(own, at, weight, &mut out),
         LoadKind::Force { .. }
         | LoadKind::Torque { .. }
         | LoadKind::Distributed(_)
@@ -264,7 +266,11 @@ pub(super) fn hold_virtual<S: Scalar>(out: &mut Pulled<S>) {
 }
 
 /// Pulls the cotangents of a point's position and velocity back.
-fn pull_point<S: Scalar>(side: &JointSide<S>, [x, rate]: [Vec3<S>; 2], out: &mut SideCotangent<S>) {
+pub(super) fn pull_point<S: Scalar>(
+    side: &JointSide<S>,
+    [x, rate]: [Vec3<S>; 2],
+    out: &mut SideCotangent<S>,
+) {
     let acceleration = Vec3::zeros();
     let cot = MarkerKinematics {
         x,
