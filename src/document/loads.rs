@@ -7,7 +7,7 @@ use flexbody_mechanics::model;
 use schemars::JsonSchema;
 use serde::Deserialize;
 
-/// A force, torque, spring, damper, friction, stop or contact.
+/// A force, torque, spring, damper, friction, drag, stop or contact.
 #[derive(Clone, Debug, Deserialize, JsonSchema)]
 #[serde(rename_all = "snake_case", deny_unknown_fields)]
 pub enum Load {
@@ -24,6 +24,8 @@ pub enum Load {
     Damping(Damping),
     /// Coulomb friction in a joint: size times tanh(rate / width).
     Friction(Friction),
+    /// Quadratic drag on a point of a body: c |u|² u / √(|u|² + w²) against its velocity u.
+    Drag(Drag),
     /// Stops of a joint or of the distance of two points, which press back smoothly.
     Stop(Stop),
     /// A contact of a sphere or point of a body with a plane, sphere or capsule, with friction.
@@ -282,6 +284,28 @@ pub struct Friction {
     pub width: Quantity,
 }
 
+/// Quadratic drag on a point of a body in a fluid at rest.
+#[derive(Clone, Debug, Deserialize, JsonSchema)]
+#[serde(deny_unknown_fields)]
+pub struct Drag {
+    /// The body.
+    pub body: String,
+    /// Where it acts, by name or in body axes; default the centre of mass.
+    pub point: Option<Point>,
+    /// Half the density times the drag coefficient times the area: force by the square of the speed.
+    #[schemars(extend("unit" = "N s²/m²", "minimum" = 0))]
+    pub coefficient: Quantity,
+    /// Speed w below which the drag goes smoothly to zero, default 0.001 m/s. Above it the drag is off by ½ w²/u².
+    #[serde(default = "slow")]
+    #[schemars(extend("unit" = "m/s", "exclusiveMinimum" = 0))]
+    pub width: Quantity,
+}
+
+/// The default width of drag \[m/s\].
+fn slow() -> Quantity {
+    Quantity::fixed(1e-3)
+}
+
 /// Stops of a joint or of a distance: N = k ρⁿ ρ' (1 + ³⁄₂ c δ̇), never negative, with the penetration δ and its smooth ramp ρ.
 /// Give `joint`, or `between` and `at`.
 #[derive(Clone, Debug, Deserialize, JsonSchema)]
@@ -480,6 +504,7 @@ impl Load {
             Load::TorsionSpring(_) => "torsion_spring",
             Load::Damping(_) => "damping",
             Load::Friction(_) => "friction",
+            Load::Drag(_) => "drag",
             Load::Stop(_) => "stop",
             Load::Contact(_) => "contact",
             Load::Pressure(_) => "pressure",

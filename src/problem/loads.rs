@@ -113,6 +113,14 @@ fn kind<S: Scalar>(
                 width: get(&friction.width),
             }
         }
+        WrittenLoad::Drag(drag) => LoadKind::Drag {
+            body: body(&drag.body),
+            point: drag.point.as_ref().map_or(Vec3::zeros(), |point| {
+                assembly.in_body(&drag.body, point) - assembly.pose(&drag.body).centre
+            }),
+            coefficient: get(&drag.coefficient),
+            width: get(&drag.width),
+        },
         WrittenLoad::Stop(stop) => stop_of(document, assembly, stop),
         WrittenLoad::Contact(contact) => LoadKind::Contact(contact_of(assembly, contact)),
         WrittenLoad::Pressure(load) => {

@@ -348,6 +348,11 @@ pub(super) fn beside(problem: &Problem) -> Option<Finding> {
                 Load::Torque(torque) if is_point(&torque.body) => {
                     Some(turned(join(&pointer, "body"), &torque.body, "a torque on"))
                 }
+                Load::Drag(drag) if is_point(&drag.body) => {
+                    let place = assembly.in_body(&drag.body, drag.point.as_ref()?);
+                    let centre = assembly.pose(&drag.body).centre;
+                    away(join(&pointer, "point"), &drag.body, place - centre)
+                }
                 Load::Spring(spring) => ends(&pointer, &spring.between, &spring.at),
                 Load::Contact(own) => ends(&pointer, &own.between, &own.at).or_else(|| {
                     let sides = own.between.iter();
@@ -375,9 +380,11 @@ pub(super) fn beside(problem: &Problem) -> Option<Finding> {
                 }
                 // Elements are no point masses.
                 Load::Pressure(_) | Load::Area(_) | Load::Edge(_) | Load::Line(_) => None,
-                Load::Force(_) | Load::Torque(_) | Load::TorsionSpring(_) | Load::Friction(_) => {
-                    None
-                }
+                Load::Force(_)
+                | Load::Torque(_)
+                | Load::TorsionSpring(_)
+                | Load::Friction(_)
+                | Load::Drag(_) => None,
             }
         })
     };

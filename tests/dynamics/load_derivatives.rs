@@ -113,6 +113,15 @@ fn kinds(body_b: Option<usize>, numbers: &mut Numbers) -> Vec<(JointKind, LoadKi
         coefficient,
     };
     all.push((Spherical, ball));
+    for width in [0.7, 3.0] {
+        let drag = LoadKind::Drag {
+            body: 1,
+            point: numbers.vector(),
+            coefficient: 0.8,
+            width,
+        };
+        all.push((Spherical, drag));
+    }
     all.extend(stops(body_b, numbers));
     all.extend(contacts(body_b, numbers));
     all
@@ -180,7 +189,7 @@ fn stops(body_b: Option<usize>, numbers: &mut Numbers) -> Vec<(JointKind, LoadKi
     let law = |exponent: f64, width: f64| NormalLaw {
         exponent,
         stiffness: 3.0,
-        dissipation: 0.2,
+        dissipation: 0.05,
         width,
     };
     let mut all = Vec::new();
@@ -358,7 +367,10 @@ fn potentials() {
         if matches!(
             case.model.loads[0].kind,
             LoadKind::Spring { .. }
-                | LoadKind::JointStop { .. }
+                | LoadKind::JointStop {
+                    dof: DegreeOfFreedom::Translation,
+                    ..
+                }
                 | LoadKind::DistanceStop { .. }
                 | LoadKind::Contact(_)
         ) {
@@ -482,7 +494,7 @@ fn forces_between_two_bodies_balance() {
     for case in cases() {
         if matches!(
             case.model.loads[0].kind,
-            LoadKind::Force { .. } | LoadKind::Torque { .. }
+            LoadKind::Force { .. } | LoadKind::Torque { .. } | LoadKind::Drag { .. }
         ) || case.model.joints[0].body_b.is_none()
         {
             continue;

@@ -1,7 +1,7 @@
 //! Stops of joints and distances: rebounds against the implicit formula, penetrations in closed form, energy, families,
 //! derivatives, and contacts that come and go between steps.
 
-use crate::reference::documents::{problem as parsed, run, value, values};
+use crate::reference::documents::{problem as parsed, run, value, values, vary};
 use crate::reference::gradients::gradients_are_exact;
 use flexbody_driver::simulate;
 use serde_json::Value;
@@ -239,34 +239,19 @@ fn gradients_by_every_method() {
     ];
     for simulation in methods {
         let mut document = machine(simulation.clone());
-        let mut variables = serde_json::Map::new();
-        let mut add = |path: String| {
-            variables.insert(path.clone(), json!({"path": path}));
+        let of = |load: &str, keys: &[&str]| -> Vec<String> {
+            let path = |key: &&str| format!("/loads/{load}/stop/{key}");
+            keys.iter().map(path).collect()
         };
-        for (load, keys) in [
-            (
-                "ends",
-                &["lower", "upper", "stiffness", "dissipation", "width"][..],
-            ),
-            ("hinge", &["lower", "stiffness", "dissipation", "width"]),
-            (
-                "bump",
-                &[
-                    "lower",
-                    "stiffness",
-                    "dissipation",
-                    "width",
-                    "at/0/1",
-                    "at/1/0",
-                ],
-            ),
-        ] {
-            for key in keys {
-                add(format!("/loads/{load}/stop/{key}"));
-            }
+        let law = ["stiffness", "dissipation", "width"];
+        let mut paths = of("ends", &["lower", "upper"]);
+        paths.extend(of("hinge", &["lower"]));
+        paths.extend(of("bump", &["lower", "at/0/1", "at/1/0"]));
+        for load in ["ends", "hinge", "bump"] {
+            paths.extend(of(load, &law));
         }
-        add("/bodies/arm/mass".into());
-        document["variables"] = variables.into();
+        paths.push("/bodies/arm/mass".into());
+        vary(&mut document, &paths);
         gradients_are_exact(&parsed(&document), &simulation);
     }
 }
@@ -326,7 +311,7 @@ fn no_contact_is_missed_between_steps() {
         "version": 1, "name": "post", "gravity": [0, 0, 0],
         "bodies": {"ball": {"shape": "point", "mass": 1, "place": {"at": [-20, 0.05, 0]},
                             "velocity": {"linear": [20, 0, 0]}}},
-        "loads": {"post": {"stop": {"between": ["ball", "ground"], "at": [[0, 0, 0], [0, 0, 0]], "lower": 0.1,
+        "loads": {"post": {"stop": {"between": ["ball", "ground"], "at": {"a": [0, 0, 0], "b": [0, 0, 0]}, "lower": 0.1,
                                     "stiffness": 1e6, "width": 0.01}}},
         "simulation": {"duration": 2},
         "functions": {"y": {"final": {"velocity": {"body": "ball", "direction": [0, 1, 0]}}},
@@ -398,9 +383,12 @@ fn fifty_contacts() {
         "energy": {"final": {"energy": "total"}},
         "force": {"integral": {"contact_force": {"load": "stop"}}}
     });
-    document["variables"] = json!({"stiffness": {"path": "/loads/stop/stop/stiffness"},
-                                   "upper": {"path": "/loads/stop/stop/upper"},
-                                   "mass": {"path": "/bodies/body/mass"}});
+    let paths = [
+        "/loads/stop/stop/stiffness",
+        "/loads/stop/stop/upper",
+        "/bodies/body/mass",
+    ];
+    vary(&mut document, &paths.map(String::from));
     let motion = run(&document);
     // Each contact turns 2 m v = 8 N s.
     let contacts = motion.at.function(1).value / 8.0;

@@ -243,6 +243,7 @@ fn vibration(model: &Model<f64>, load: &LoadKind<f64>) -> Option<(f64, f64)> {
         | LoadKind::Damping { .. }
         | LoadKind::BallDamping { .. }
         | LoadKind::Friction { .. }
+        | LoadKind::Drag { .. }
         // They vibrate only while they touch, where the error of the steps sees it.
         | LoadKind::JointStop { .. }
         | LoadKind::DistanceStop { .. }

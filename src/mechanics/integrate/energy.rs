@@ -262,7 +262,8 @@ impl Ledger {
             | LoadKind::Torque { .. }
             | LoadKind::Damping { .. }
             | LoadKind::BallDamping { .. }
-            | LoadKind::Friction { .. } => 0.0,
+            | LoadKind::Friction { .. }
+            | LoadKind::Drag { .. } => 0.0,
         });
         let square = scale.length * scale.length;
         let elastic = model.flexible.iter().map(|body| {

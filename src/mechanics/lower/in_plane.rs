@@ -318,6 +318,7 @@ impl Plane {
                 // Flexible bodies that carry it have no plane but by chance, which is not looked for.
                 LoadKind::Distributed(_) => examiner.zero(S::one(), 1.0, what),
                 LoadKind::Spring { .. }
+                | LoadKind::Drag { .. }
                 | LoadKind::BallDamping { .. }
                 | LoadKind::Damping {
                     dof: DegreeOfFreedom::Translation,

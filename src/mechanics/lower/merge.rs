@@ -250,6 +250,7 @@ fn move_load<S: Scalar>(kind: &mut LoadKind<S>, on_host: &[Option<Pose<S>>]) {
                 moved(body, point_b);
             }
         }
+        LoadKind::Drag { body, point, .. } => moved(body, point),
         LoadKind::Contact(own) => {
             moved(&mut own.body_a, &mut own.point_a);
             if let Some(body) = &mut own.body_b {

@@ -131,6 +131,7 @@ fn vectors(model: &Model<f64>) -> (Vec<Vec3<f64>>, Vec<Vec3<f64>>) {
                 inside.push(at(*body_a, point_a) - b);
                 inside.push(turn(*body_a) * point_a);
             }
+            LoadKind::Drag { body, point, .. } => inside.push(turn(*body) * point),
             LoadKind::Contact(own) => {
                 let (of_a, of_b) = (turn(own.body_a), own.body_b.map(turn));
                 inside.push(of_a * own.point_a);

@@ -314,7 +314,9 @@ fn turn_to(joint: &Joint<f64>, normal: &Vec3<f64>) -> Option<Mat3<f64>> {
 /// Points of a load, each with its body.
 pub(super) fn points<S: Scalar>(kind: &LoadKind<S>) -> [Option<(Option<usize>, Vec3<S>)>; 2] {
     match kind {
-        LoadKind::Force { body, point, .. } => [Some((Some(*body), *point)), None],
+        LoadKind::Force { body, point, .. } | LoadKind::Drag { body, point, .. } => {
+            [Some((Some(*body), *point)), None]
+        }
         LoadKind::Spring {
             body_a,
             body_b,

@@ -73,6 +73,7 @@ pub(super) fn holds<S: Scalar>(
                 Axes::Ground => vanishes(Some(point), &turns),
                 Axes::Body => vanishes(None, &turns),
             },
+            LoadKind::Drag { body, point, .. } if is(*body) => vanishes(Some(point), &turns),
             LoadKind::Torque { body, .. } if is(*body) => vanishes(None, &turns),
             LoadKind::Spring {
                 body_a,
@@ -116,7 +117,10 @@ pub(super) fn holds<S: Scalar>(
                 }
             }
             // No flexible body is a point.
-            LoadKind::Force { .. } | LoadKind::Torque { .. } | LoadKind::Distributed(_) => {}
+            LoadKind::Force { .. }
+            | LoadKind::Torque { .. }
+            | LoadKind::Drag { .. }
+            | LoadKind::Distributed(_) => {}
         }
     }
     let read = || "a function observes its rotation".to_owned();

@@ -163,7 +163,9 @@ impl Seen {
 /// The bodies that a load acts on.
 fn ends<S>(load: &Load<S>, model: &Model<S>) -> [Option<usize>; 2] {
     match load.kind {
-        LoadKind::Force { body, .. } | LoadKind::Torque { body, .. } => [Some(body), None],
+        LoadKind::Force { body, .. }
+        | LoadKind::Torque { body, .. }
+        | LoadKind::Drag { body, .. } => [Some(body), None],
         LoadKind::Distributed(ref load) => [Some(load.body), None],
         LoadKind::Spring { body_a, body_b, .. } | LoadKind::DistanceStop { body_a, body_b, .. } => {
             [Some(body_a), body_b]
@@ -202,7 +204,9 @@ fn leave_out<S: Scalar>(model: &mut Model<S>, number: &[Option<usize>]) -> [Vec<
     model.loads.retain(|_| stays.next() == Some(&true));
     for load in &mut model.loads {
         match &mut load.kind {
-            LoadKind::Force { body, .. } | LoadKind::Torque { body, .. } => new(body),
+            LoadKind::Force { body, .. }
+            | LoadKind::Torque { body, .. }
+            | LoadKind::Drag { body, .. } => new(body),
             LoadKind::Distributed(load) => new(&mut load.body),
             LoadKind::Spring { body_a, body_b, .. }
             | LoadKind::DistanceStop { body_a, body_b, .. } => {

@@ -146,6 +146,7 @@ impl Welded {
                     | LoadKind::Damping { .. }
                     | LoadKind::BallDamping { .. }
                     | LoadKind::Friction { .. }
+                    | LoadKind::Drag { .. }
                     | LoadKind::JointStop { .. }
                     | LoadKind::Distributed(_) => continue,
                 };

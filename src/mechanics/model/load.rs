@@ -1,4 +1,4 @@
-//! Loads: forces and torques on bodies, springs, dampers, friction, stops and contacts.
+//! Loads: forces and torques on bodies, springs, dampers, friction, drag, stops and contacts.
 //!
 //! Let m(t) be a [`TimeFunction`], d = P_A − P_B the vector between two points, l = √(dᵀd), e the
 //! axis of a joint, φ the angle of its body A relative to body B about e, s = e · d its
@@ -12,6 +12,7 @@
 //! damping            M = −c φ̇ e   or   F = −c ṡ e
 //! ball damping       M = −c (ω_A − ω_B)
 //! friction           M = −μ tanh(φ̇ / w) e   or   F = −μ tanh(ṡ / w) e
+//! drag               F = −c |u|² u / √(|u|² + w²),           u = ṙ of a point
 //! joint stop         M = (N(φ_l − φ, −φ̇) − N(φ − φ_u, φ̇)) e   or   F likewise with s
 //! distance stop      F = (N(l_l − l, −l̇) − N(l − l_u, l̇)) d / l
 //! ```
@@ -125,6 +126,17 @@ pub enum LoadKind<S> {
         /// Rate w, at which tanh 1 of μ acts \[rad/s or m/s\].
         width: S,
     },
+    /// Quadratic drag on a point of a body in a fluid at rest, smooth where it is at rest.
+    Drag {
+        /// The body.
+        body: usize,
+        /// The point, from the centre of mass in body axes \[m\].
+        point: Vec3<S>,
+        /// c = ½ ρ c_d A \[N s²/m²\].
+        coefficient: S,
+        /// Speed w, well above which the drag is quadratic \[m/s\].
+        width: S,
+    },
     /// Stops at the ends of the way of a joint, along or about its axis.
     JointStop {
         /// The joint.
@@ -169,6 +181,7 @@ parameters!(enum LoadKind {
     Damping { joint, dof; coefficient },
     BallDamping { joint; coefficient },
     Friction { joint, dof; size, width },
+    Drag { body; point, coefficient, width },
     JointStop { joint, dof, counter; limits, law },
     DistanceStop { body_a, body_b; point_a, point_b, limits, law },
     Contact(; contact),
@@ -188,6 +201,7 @@ impl<S: Scalar> LoadKind<S> {
             | LoadKind::Damping { .. }
             | LoadKind::BallDamping { .. }
             | LoadKind::Friction { .. }
+            | LoadKind::Drag { .. }
             | LoadKind::JointStop { .. }
             | LoadKind::DistanceStop { .. }
             | LoadKind::Contact(_) => None,
@@ -207,6 +221,7 @@ impl<S> LoadKind<S> {
             LoadKind::Force { .. }
             | LoadKind::Torque { .. }
             | LoadKind::Spring { .. }
+            | LoadKind::Drag { .. }
             | LoadKind::DistanceStop { .. }
             | LoadKind::Contact(_)
             | LoadKind::Distributed(_) => None,
@@ -225,6 +240,7 @@ impl<S> LoadKind<S> {
             | LoadKind::Damping { .. }
             | LoadKind::BallDamping { .. }
             | LoadKind::Friction { .. }
+            | LoadKind::Drag { .. }
             | LoadKind::DistanceStop { .. }
             | LoadKind::Contact(_)
             | LoadKind::Distributed(_) => None,

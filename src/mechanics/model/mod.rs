@@ -73,9 +73,9 @@ impl<S: Scalar> Model<S> {
             LoadKind::Spring { damping, .. } | LoadKind::TorsionSpring { damping, .. } => {
                 damping.re() == 0.0
             }
-            LoadKind::Damping { coefficient, .. } | LoadKind::BallDamping { coefficient, .. } => {
-                coefficient.re() == 0.0
-            }
+            LoadKind::Damping { coefficient, .. }
+            | LoadKind::BallDamping { coefficient, .. }
+            | LoadKind::Drag { coefficient, .. } => coefficient.re() == 0.0,
             LoadKind::Friction { size, .. } => size.re() == 0.0,
             LoadKind::JointStop { law, .. } | LoadKind::DistanceStop { law, .. } => {
                 law.dissipation.re() == 0.0

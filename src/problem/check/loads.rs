@@ -97,6 +97,7 @@ impl Checker<'_> {
                 self.loaded_joint(pointer, &friction.joint, &kinds);
                 self.joint_motion(pointer, &friction.joint, friction.motion);
             }
+            Load::Drag(drag) => self.moving(pointer, &drag.body, &drag.point),
             Load::Stop(stop) => self.stop(pointer, stop),
             Load::Contact(contact) => self.contact(pointer, contact),
             Load::Pressure(load) => {
@@ -187,6 +188,7 @@ impl Checker<'_> {
             | Load::Torque(_)
             | Load::Damping(_)
             | Load::Friction(_)
+            | Load::Drag(_)
             | Load::Stop(_)
             | Load::Contact(_)
             | Load::Pressure(_)

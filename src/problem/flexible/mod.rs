@@ -377,7 +377,9 @@ impl<S: Scalar> FlexibleBodies<S> {
             let mut kind = model.loads[k].kind.clone();
             let load = Holder::Load(k);
             match &mut kind {
-                LoadKind::Force { body, point, .. } => self.move_place(model, load, body, point),
+                LoadKind::Force { body, point, .. } | LoadKind::Drag { body, point, .. } => {
+                    self.move_place(model, load, body, point)
+                }
                 LoadKind::Spring {
                     body_a,
                     body_b,

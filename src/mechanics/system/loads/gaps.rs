@@ -32,6 +32,7 @@ pub fn may_touch<S>(kind: &LoadKind<S>) -> bool {
         | LoadKind::Damping { .. }
         | LoadKind::BallDamping { .. }
         | LoadKind::Friction { .. }
+        | LoadKind::Drag { .. }
         | LoadKind::Distributed(_) => false,
     }
 }

@@ -8,6 +8,7 @@
 
 mod contact;
 mod distributed;
+mod drag;
 pub mod gaps;
 pub mod measured;
 mod normal_law;
@@ -25,7 +26,7 @@ use super::side::JointSide;
 use super::turns;
 use crate::linalg::Emit;
 use crate::math::{Scalar, Vec3};
-use crate::model::{Axes, DegreeOfFreedom, JointFrame, LoadKind, Model};
+use crate::model::{Axes, DegreeOfFreedom, JointFrame, LoadKind, Model, Surface};
 use parameters::give_to_parameters;
 use pull::{Pulled, pull};
 
@@ -65,7 +66,9 @@ fn for_each_load<S: Scalar>(
     };
     for (i, load) in model.loads.iter().enumerate() {
         let acting = match &load.kind {
-            LoadKind::Force { body, point, .. } => acting((*body, at(point)), (None, nowhere)),
+            LoadKind::Force { body, point, .. } | LoadKind::Drag { body, point, .. } => {
+                acting((*body, at(point)), (None, nowhere))
+            }
             LoadKind::Torque { body, .. } => acting((*body, nowhere), (None, nowhere)),
             LoadKind::Spring {
                 body_a,
@@ -164,6 +167,7 @@ fn blocks<S: Scalar>(kind: &LoadKind<S>) -> Blocks {
         LoadKind::Spring { damping, .. } => of(BOTH, BOTH, damped(damping, BOTH)),
         LoadKind::TorsionSpring { damping, .. } => of(ANGULAR, ANGULAR, damped(damping, ANGULAR)),
         LoadKind::Contact(_) => of(BOTH, BOTH, BOTH),
+        LoadKind::Drag { .. } => of(BOTH, ANGULAR, BOTH),
         LoadKind::BallDamping { .. } => of(ANGULAR, ANGULAR, ANGULAR),
         LoadKind::JointStop {
             dof: DegreeOfFreedom::Rotation,
@@ -284,7 +288,7 @@ fn give_to_states(
     }
 }
 
-/// The first spring or stop of length zero in the placement whose ends may not meet, if any.
+/// The first spring, stop or contact of length zero in the placement whose ends may not meet, if any.
 pub fn without_length(model: &Model<f64>) -> Option<&str> {
     let (q, v) = guess(model);
     let mut motions = Vec::new();
@@ -304,7 +308,12 @@ pub fn without_length(model: &Model<f64>) -> Option<&str> {
         {
             found = found.or(Some(i));
         }
-        if matches!(kind, LoadKind::DistanceStop { .. }) && power::apart(at).length == 0.0 {
+        let needs_length = match kind {
+            LoadKind::DistanceStop { .. } => true,
+            LoadKind::Contact(own) => !matches!(own.surface, Surface::Plane { .. }),
+            _ => false,
+        };
+        if needs_length && power::apart(at).length == 0.0 {
             found = found.or(Some(i));
         }
     });

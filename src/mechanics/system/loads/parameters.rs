@@ -102,6 +102,19 @@ pub(super) fn give_to_parameters(
             *point_b += pulled.b.frame.point;
             stop::give(&pulled.scalars, limits, law);
         }
+        (
+            LoadKind::Drag { .. },
+            LoadKind::Drag {
+                point,
+                coefficient,
+                width,
+                ..
+            },
+        ) => {
+            *point += pulled.a.frame.point;
+            *coefficient += s0;
+            *width += s1;
+        }
         (LoadKind::Contact(_), LoadKind::Contact(own)) => contact::give(pulled, own),
         (LoadKind::Distributed(_), LoadKind::Distributed(_)) => {}
         (
@@ -113,6 +126,7 @@ pub(super) fn give_to_parameters(
             | LoadKind::Damping { .. }
             | LoadKind::BallDamping { .. }
             | LoadKind::Friction { .. }
+            | LoadKind::Drag { .. }
             | LoadKind::JointStop { .. }
             | LoadKind::DistanceStop { .. }
             | LoadKind::Contact(_),

@@ -1,6 +1,6 @@
 //! The forces of each kind of load, and the energy of springs.
 
-use super::{Acting, contact, stop};
+use super::{Acting, contact, drag, stop};
 use crate::math::scalar::length;
 use crate::math::{Scalar, Vec3};
 use crate::model::{Axes, ConstraintRow, DegreeOfFreedom, LoadKind};
@@ -85,6 +85,9 @@ pub(super) fn forces<S: Scalar>(
         LoadKind::JointStop { .. } | LoadKind::DistanceStop { .. } => {
             stop::of(kind).map_or([none, none], |stop| stop.forces(at))
         }
+        LoadKind::Drag {
+            coefficient, width, ..
+        } => [drag::force(at, *coefficient, *width), none],
         LoadKind::Contact(own) => contact::forces(own, at),
         LoadKind::Distributed(_) => [none, none],
     }
@@ -133,7 +136,8 @@ pub(super) fn potential<S: Scalar>(kind: &LoadKind<S>, at: &Acting<S>) -> S {
         | LoadKind::Distributed(_)
         | LoadKind::Damping { .. }
         | LoadKind::BallDamping { .. }
-        | LoadKind::Friction { .. } => S::zero(),
+        | LoadKind::Friction { .. }
+        | LoadKind::Drag { .. } => S::zero(),
     }
 }
 

@@ -1,7 +1,7 @@
 //! The transposed derivative of the power ψᵀf of each kind of load.
 
 use super::power::{SLIDE, SpringLength, angle, may_meet, stretch, tanh, turn_rate};
-use super::{Acting, contact, stop};
+use super::{Acting, contact, drag, stop};
 use crate::math::{Scalar, Vec3};
 use crate::model::{Axes, ConstraintRow, DegreeOfFreedom, LoadKind};
 use crate::system::bodies::BodyMotion;
@@ -202,6 +202,9 @@ pub(super) fn pull<S: Scalar>(
                 stop.pull(at, &virtually, &mut out);
             }
         }
+        LoadKind::Drag {
+            coefficient, width, ..
+        } => drag::pull(at, &virtually, [*coefficient, *width], &mut out),
         LoadKind::Contact(own) => contact::pull(own, at, &virtually, &mut out),
         LoadKind::Distributed(_) => {}
     }
@@ -253,7 +256,8 @@ pub(super) fn pull_potential<S: Scalar>(
         | LoadKind::Distributed(_)
         | LoadKind::Damping { .. }
         | LoadKind::BallDamping { .. }
-        | LoadKind::Friction { .. } => return None,
+        | LoadKind::Friction { .. }
+        | LoadKind::Drag { .. } => return None,
     }
     Some(out)
 }

@@ -64,6 +64,7 @@ pub(super) fn of<S>(kind: &LoadKind<S>) -> Option<Stop<'_, S>> {
         | LoadKind::Damping { .. }
         | LoadKind::BallDamping { .. }
         | LoadKind::Friction { .. }
+        | LoadKind::Drag { .. }
         | LoadKind::Contact(_)
         | LoadKind::Distributed(_) => return None,
     };
