@@ -13,6 +13,7 @@
 //! The normal force has no power along the tangent, so δ̇ follows from v at z whatever the place of z along n. The pull-backs
 //! go from the cotangents of δ, n, v, u and z to the bodies.
 
+use super::gaps::Course;
 use super::normal_law;
 use super::pull::{Pulled, pull_point};
 use super::{Acting, stop};
@@ -141,10 +142,27 @@ impl<S: Scalar> State<S> {
     }
 }
 
-/// δ and its rate.
-pub(super) fn gap<S: Scalar>(contact: &Contact<S>, at: &Acting<S>) -> [f64; 2] {
-    let now = state(contact, at);
-    [now.penetration.re(), -now.normal.dot(&now.velocity).re()]
+/// What δ follows from, for the control of steps.
+pub(super) fn course<S: Scalar>(contact: &Contact<S>, at: &Acting<S>) -> Course {
+    let real = |v: Vec3<S>| v.map(Scalar::re);
+    let (radius, half) = match &contact.surface {
+        Surface::Plane { .. } => {
+            let now = state(contact, at);
+            return Course::Depth {
+                value: now.penetration.re(),
+                rate: -now.normal.dot(&now.velocity).re(),
+            };
+        }
+        Surface::Sphere { radius } => (radius.re(), Vec3::zeros()),
+        Surface::Capsule { half, radius } => (radius.re(), real(at.b.motion.rotation * half)),
+    };
+    Course::Distance {
+        point: real(at.a.point() - at.b.point()),
+        rate: real(at.a.point_jet().rate - at.b.point_jet().rate),
+        half,
+        reach: contact.radius.re() + radius,
+        side: 1.0,
+    }
 }
 
 /// δ.

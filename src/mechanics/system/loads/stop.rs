@@ -9,6 +9,7 @@
 //! with N of [`super::normal_law`].
 
 use super::Acting;
+use super::gaps::Course;
 use super::normal_law::{self, NormalForce};
 use super::power::{SLIDE, angle, apart, turn_rate};
 use super::pull::{Pulled, hold_virtual, pull_angle, pull_rate, pull_row, pull_turn};
@@ -165,20 +166,31 @@ impl<S: Scalar> Stop<'_, S> {
     }
 
     /// Width of the onset.
-    pub(super) fn width(&self) -> f64 {
-        self.law.width.re()
+    pub(super) fn width(&self) -> S {
+        self.law.width
     }
 
-    /// Calls `visit` with the penetration of each limit and its rate.
-    pub(super) fn each_gap(&self, at: &Acting<S>, mut visit: impl FnMut(f64, f64)) {
-        let (x, rate) = (
-            self.coordinate.value(at).re(),
-            self.coordinate.rate(at).re(),
-        );
+    /// Calls `visit` with what the penetration of each limit follows from.
+    pub(super) fn each_course(&self, at: &Acting<S>, mut visit: impl FnMut(Course)) {
+        let real = |v: Vec3<S>| v.map(Scalar::re);
         for (limit, side) in self.limits.iter().zip(SIDES) {
-            if let Some(limit) = limit {
-                visit(side * (limit.re() - x), -(side * rate));
-            }
+            let Some(limit) = limit else { continue };
+            visit(match self.coordinate {
+                Coordinate::Angle | Coordinate::Slide => {
+                    let (x, rate) = (self.coordinate.value(at), self.coordinate.rate(at));
+                    Course::Depth {
+                        value: side * (limit.re() - x.re()),
+                        rate: -(side * rate.re()),
+                    }
+                }
+                Coordinate::Distance => Course::Distance {
+                    point: real(at.a.point() - at.b.point()),
+                    rate: real(at.a.point_jet().rate - at.b.point_jet().rate),
+                    half: Vec3::zeros(),
+                    reach: limit.re(),
+                    side,
+                },
+            });
         }
     }
 
