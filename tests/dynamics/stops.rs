@@ -378,7 +378,7 @@ fn fifty_contacts() {
     let stop =
         json!({"joint": "joint", "lower": -0.1, "upper": 0.1, "stiffness": 3e3, "width": 0.02});
     let mut document = one_body("prismatic", [1.0, 0.0, 0.0], 2.0, &stop);
-    document["simulation"] = json!({"duration": 10});
+    document["simulation"] = json!({"duration": 10, "tolerance": 1e-10});
     document["functions"] = json!({
         "energy": {"final": {"energy": "total"}},
         "force": {"integral": {"contact_force": {"load": "stop"}}}

@@ -8,7 +8,8 @@
 use crate::math::Scalar;
 use crate::model::Model;
 use crate::system::BodyMotion;
-use crate::system::loads::gaps::{Course, Gap, gaps, may_touch};
+use crate::system::loads::course::Course;
+use crate::system::loads::gaps::{Gap, gaps, may_touch};
 
 /// A contact that a step passes over.
 #[derive(Clone, Copy, Debug, PartialEq)]

@@ -13,7 +13,7 @@
 //! The normal force has no power along the tangent, so δ̇ follows from v at z whatever the place of z along n. The pull-backs
 //! go from the cotangents of δ, n, v, u and z to the bodies.
 
-use super::gaps::Course;
+use super::course::Course;
 use super::normal_law;
 use super::pull::{Pulled, pull_point};
 use super::{Acting, stop};

@@ -7,9 +7,11 @@
 //! flexible body act on its coordinates too: `distributed.rs` has all of theirs.
 
 mod contact;
+pub mod course;
 mod distributed;
 mod drag;
 pub mod gaps;
+mod kinds;
 pub mod measured;
 mod normal_law;
 mod parameters;
@@ -28,7 +30,7 @@ use crate::linalg::Emit;
 use crate::math::{Scalar, Vec3};
 use crate::model::{Axes, DegreeOfFreedom, JointFrame, LoadKind, Model, Surface};
 use parameters::give_to_parameters;
-use pull::{Pulled, pull};
+use pull::Pulled;
 
 /// Both bodies of a load, with its points or frames.
 pub(super) struct Acting<'a, S> {
@@ -112,7 +114,7 @@ fn for_each_load<S: Scalar>(
 /// reference point, those on elastic coordinates) to `out`, in velocity numbering.
 pub fn add_forces<S: Scalar>(here: &InMotion<S>, out: &mut [S]) {
     for_each_load(here.model, here.motions, |_, kind, at| {
-        let forces = power::forces(kind, at, here.time);
+        let forces = kinds::forces(kind, at, here.time);
         for (body, (force, torque)) in at.bodies.into_iter().zip(forces) {
             let Some(body) = body else { continue };
             add6(&mut out[here.numbering.velocity(body)..], &force, &torque);
@@ -128,7 +130,7 @@ pub fn add_supplying_forces<S: Scalar>(here: &InMotion<S>, out: &mut [S]) {
         if !matches!(kind, LoadKind::Force { .. } | LoadKind::Torque { .. }) {
             return;
         }
-        let forces = power::forces(kind, at, here.time);
+        let forces = kinds::forces(kind, at, here.time);
         for (body, (force, torque)) in at.bodies.into_iter().zip(forces) {
             let Some(body) = body else { continue };
             add6(&mut out[here.numbering.velocity(body)..], &force, &torque);
@@ -220,7 +222,7 @@ pub fn emit_jacobian<S: Scalar>(here: &InMotion<S>, to: &LoadEntries<S>, emit: &
                 let mut psi = [(Vec3::zeros(), Vec3::zeros()); 2];
                 let (linear, angular) = &mut psi[side];
                 [linear, angular][component / 3][component % 3] = S::one();
-                let pulled = pull(kind, at, here.time, &psi);
+                let pulled = kinds::pulled(kind, at, here.time, &psi);
                 let row = to.row + numbering.velocity(body) + component;
                 for (body, by) in at.bodies.into_iter().zip([&pulled.a, &pulled.b]) {
                     let Some(body) = body else { continue };
@@ -263,7 +265,7 @@ pub fn pull_back(here: &InMotion<f64>, psi: &[f64], out: &mut LoadCotangent) {
                 velocities_of(&psi[numbering.velocity(body)..])
             })
         });
-        let pulled = pull(kind, at, time, &psi);
+        let pulled = kinds::pulled(kind, at, time, &psi);
         give_to_states(&pulled, at, numbering, (&mut out.y, &mut out.v));
         give_to_parameters(kind, &pulled, (i, time), (out.model, out.time));
     });
@@ -324,7 +326,7 @@ pub fn without_length(model: &Model<f64>) -> Option<&str> {
 pub fn potential<S: Scalar>(model: &Model<S>, motions: &[BodyMotion<S>]) -> S {
     let mut sum = S::zero();
     for_each_load(model, motions, |_, kind, at| {
-        sum += power::potential(kind, at);
+        sum += kinds::potential(kind, at);
     });
     sum
 }
@@ -339,7 +341,7 @@ pub fn pull_potential(
     cot: &mut Model<f64>,
 ) {
     for_each_load(model, motions, |i, kind, at| {
-        let Some(pulled) = pull::pull_potential(kind, at, weight) else {
+        let Some(pulled) = kinds::pulled_potential(kind, at, weight) else {
             return;
         };
         give_to_states(&pulled, at, numbering, (&mut Some(&mut *y), &mut None));

@@ -1,6 +1,6 @@
 //! The forces of each kind of load, and the energy of springs.
 
-use super::{Acting, contact, drag, stop};
+use super::Acting;
 use crate::math::scalar::length;
 use crate::math::{Scalar, Vec3};
 use crate::model::{Axes, ConstraintRow, DegreeOfFreedom, LoadKind};
@@ -82,14 +82,12 @@ pub(super) fn forces<S: Scalar>(
                 (Vec3::zeros(), rb.tr_mul(&torque)),
             ]
         }
-        LoadKind::JointStop { .. } | LoadKind::DistanceStop { .. } => {
-            stop::of(kind).map_or([none, none], |stop| stop.forces(at))
-        }
-        LoadKind::Drag {
-            coefficient, width, ..
-        } => [drag::force(at, *coefficient, *width), none],
-        LoadKind::Contact(own) => contact::forces(own, at),
-        LoadKind::Distributed(_) => [none, none],
+        // They have files of their own.
+        LoadKind::JointStop { .. }
+        | LoadKind::DistanceStop { .. }
+        | LoadKind::Drag { .. }
+        | LoadKind::Contact(_)
+        | LoadKind::Distributed(_) => [none, none],
     }
 }
 
@@ -127,11 +125,10 @@ pub(super) fn potential<S: Scalar>(kind: &LoadKind<S>, at: &Acting<S>) -> S {
             let x = angle(at, *rest_angle);
             *stiffness * x * x * 0.5
         }
-        LoadKind::JointStop { .. } | LoadKind::DistanceStop { .. } => {
-            stop::of(kind).map_or(S::zero(), |stop| stop.potential(at))
-        }
-        LoadKind::Contact(own) => contact::potential(own, at),
-        LoadKind::Force { .. }
+        LoadKind::JointStop { .. }
+        | LoadKind::DistanceStop { .. }
+        | LoadKind::Contact(_)
+        | LoadKind::Force { .. }
         | LoadKind::Torque { .. }
         | LoadKind::Distributed(_)
         | LoadKind::Damping { .. }

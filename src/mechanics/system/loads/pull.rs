@@ -1,7 +1,7 @@
 //! The transposed derivative of the power ψᵀf of each kind of load.
 
+use super::Acting;
 use super::power::{SLIDE, SpringLength, angle, may_meet, stretch, tanh, turn_rate};
-use super::{Acting, contact, drag, stop};
 use crate::math::{Scalar, Vec3};
 use crate::model::{Axes, ConstraintRow, DegreeOfFreedom, LoadKind};
 use crate::system::bodies::BodyMotion;
@@ -43,16 +43,29 @@ impl<S: Scalar> Pulled<S> {
 }
 
 /// Virtual velocities (linear in ground axes, angular in body axes) of body A and body B.
-type Virtual<S> = [(Vec3<S>, Vec3<S>); 2];
+pub(super) type Virtual<S> = [(Vec3<S>, Vec3<S>); 2];
 
 /// The load's bodies with the velocities ψ.
-fn moving<S: Scalar>(at: &Acting<S>, psi: &Virtual<S>) -> [BodyMotion<S>; 2] {
+pub(super) fn moving<S: Scalar>(at: &Acting<S>, psi: &Virtual<S>) -> [BodyMotion<S>; 2] {
     let with = |motion: &BodyMotion<S>, (velocity, omega): (Vec3<S>, Vec3<S>)| BodyMotion {
         velocity,
         omega,
         ..*motion
     };
     [with(at.a.motion, psi[0]), with(at.b.motion, psi[1])]
+}
+
+/// The load with other motions of its bodies.
+pub(super) fn with_motions<'a, S: Scalar>(
+    at: &Acting<S>,
+    motions: &'a [BodyMotion<S>; 2],
+) -> Acting<'a, S> {
+    Acting {
+        bodies: at.bodies,
+        a: JointSide::fixed(&motions[0], at.a.frame),
+        b: JointSide::fixed(&motions[1], at.b.frame),
+        counted: at.counted,
+    }
 }
 
 /// Derivatives of ψᵀf.
@@ -64,12 +77,7 @@ pub(super) fn pull<S: Scalar>(
 ) -> Pulled<S> {
     let mut out = Pulled::zero();
     let motions = moving(at, psi);
-    let virtually = Acting {
-        bodies: at.bodies,
-        a: JointSide::fixed(&motions[0], at.a.frame),
-        b: JointSide::fixed(&motions[1], at.b.frame),
-        counted: at.counted,
-    };
+    let virtually = with_motions(at, &motions);
     match kind {
         LoadKind::Force {
             direction,
@@ -197,16 +205,12 @@ pub(super) fn pull<S: Scalar>(
             out.b.theta = (wb.cross(&yb) + pb.cross(&xb)) * c;
             out.b.omega = yb * c;
         }
-        LoadKind::JointStop { .. } | LoadKind::DistanceStop { .. } => {
-            if let Some(stop) = stop::of(kind) {
-                stop.pull(at, &virtually, &mut out);
-            }
-        }
-        LoadKind::Drag {
-            coefficient, width, ..
-        } => drag::pull(at, &virtually, [*coefficient, *width], &mut out),
-        LoadKind::Contact(own) => contact::pull(own, at, &virtually, &mut out),
-        LoadKind::Distributed(_) => {}
+        // They have files of their own.
+        LoadKind::JointStop { .. }
+        | LoadKind::DistanceStop { .. }
+        | LoadKind::Drag { .. }
+        | LoadKind::Contact(_)
+        | LoadKind::Distributed(_) => {}
     }
     out
 }
@@ -245,13 +249,10 @@ pub(super) fn pull_potential<S: Scalar>(
             out.scalars[0] = -(weight * *stiffness * x);
             out.scalars[1] = weight * x * x * 0.5;
         }
-        LoadKind::JointStop { .. } | LoadKind::DistanceStop { .. } => {
-            if let Some(stop) = stop::of(kind) {
-                stop.pull_potential(at, weight, &mut out);
-            }
-        }
-        LoadKind::Contact(own) => contact::pull_potential(own, at, weight, &mut out),
-        LoadKind::Force { .. }
+        LoadKind::JointStop { .. }
+        | LoadKind::DistanceStop { .. }
+        | LoadKind::Contact(_)
+        | LoadKind::Force { .. }
         | LoadKind::Torque { .. }
         | LoadKind::Distributed(_)
         | LoadKind::Damping { .. }

@@ -9,7 +9,7 @@
 //! with N of [`super::normal_law`].
 
 use super::Acting;
-use super::gaps::Course;
+use super::course::Course;
 use super::normal_law::{self, NormalForce};
 use super::power::{SLIDE, angle, apart, turn_rate};
 use super::pull::{Pulled, hold_virtual, pull_angle, pull_rate, pull_row, pull_turn};
