@@ -97,6 +97,8 @@ __all__ = [
     "TorqueInTime",
     "VaryingTorque",
     "Motion",
+    "Surface2",
+    "ContactFriction",
     "PressureInTime",
     "VaryingPressure",
     "LineForceInTime",
@@ -187,6 +189,8 @@ __all__ = [
     "loads",
     "varying_forces",
     "varying_torques",
+    "surface2s",
+    "contact_friction",
     "varying_pressures",
     "varying_line_forces",
     "drive",
@@ -479,7 +483,7 @@ class SlideStart(Part):
 
 
 class Load(Part):
-    """A force, torque, spring, damper or friction. Made by `loads`."""
+    """A force, torque, spring, damper, friction, drag, stop or contact. Made by `loads`."""
 
     __slots__ = ()
 
@@ -492,6 +496,18 @@ class VaryingForce(Part):
 
 class VaryingTorque(Part):
     """Function of time: a torque. Made by `varying_torques`."""
+
+    __slots__ = ()
+
+
+class Surface2(Part):
+    """Surface of a contact. Directions are in ground axes at the start and fixed in the body. Made by `surface2s`."""
+
+    __slots__ = ()
+
+
+class ContactFriction(Part):
+    """Friction of a contact. Made by `contact_friction`."""
 
     __slots__ = ()
 
@@ -1532,6 +1548,21 @@ def slide_start(*, displacement: Real | None = None, rate: Real | None = None) -
         Its rate, default that of the bodies' velocities.
     """
     return made(SlideStart, "slide_start", locals())
+
+
+@checked
+def contact_friction(*, coefficient: Real, width: Real) -> ContactFriction:
+    """Friction of a contact.
+
+    Parameters
+    ----------
+    coefficient : number at least 0
+        Coefficient of friction μ.
+    width : number above 0 [m/s]
+        Tangential velocity w at which 71 % of it acts. Below it the contact creeps instead of sticking. A smaller
+        width is sharper and needs finer steps.
+    """
+    return made(ContactFriction, "contact_friction", locals())
 
 
 @checked
@@ -2579,7 +2610,7 @@ class joints(Kinds):
 
 
 class loads(Kinds):
-    """A force, torque, spring, damper or friction."""
+    """A force, torque, spring, damper, friction, drag, stop or contact."""
 
     @staticmethod
     @checked
@@ -2744,6 +2775,117 @@ class loads(Kinds):
             "slide": Displacement along its axis.
         """
         return made(Load, "loads.friction", locals())
+
+    @staticmethod
+    @checked
+    def drag(*, body: str, coefficient: Real, point: Point | None = None, width: Real | None = None) -> Load:
+        """Quadratic drag on a point of a body: c |u|² u / √(|u|² + w²) against its velocity u.
+
+        Parameters
+        ----------
+        body : text
+            The body.
+        coefficient : number at least 0 [N s²/m²]
+            Half the density times the drag coefficient times the area: force by the square of the speed.
+        point : text or numbers, shape (3,) [m], optional
+            Where it acts, by name or in body axes; default the centre of mass.
+            text: Name of one of the body's points.
+            numbers, shape (3,) [m]: Coordinates in body axes from their origin.
+        width : number above 0 [m/s], optional
+            Speed w below which the drag goes smoothly to zero, default 0.001 m/s. Above it the drag is off by ½
+            w²/u².
+        """
+        return made(Load, "loads.drag", locals())
+
+    @staticmethod
+    @checked
+    def stop(
+        *,
+        stiffness: Real,
+        width: Real,
+        joint: str | None = None,
+        motion: Motion | None = None,
+        between: Sequence[str] | None = None,
+        at: Ends | None = None,
+        lower: Real | None = None,
+        upper: Real | None = None,
+        dissipation: Real | None = None,
+        exponent: Real | None = None,
+    ) -> Load:
+        """Stops of a joint or of the distance of two points, which press back smoothly.
+
+        Parameters
+        ----------
+        stiffness : number above 0 [N/m or N m/rad]
+            Stiffness k: force or torque per penetration, to the power of the exponent if there is one.
+        width : number above 0 [m or rad]
+            Width w of the onset, from w/2 before the limit to w/2 behind it. A smaller width is sharper and needs
+            finer steps.
+        joint : text, optional
+            Name of a revolute, prismatic, cylindrical or planar joint.
+        motion : "turn" or "slide", optional
+            Motion of a cylindrical joint, default rotation.
+            "turn": Rotation about its axis.
+            "slide": Displacement along its axis.
+        between : list of 2 texts, optional
+            Two bodies whose points are stopped; one of them may be "ground".
+        at : numbers, shape (2, 3) [m] or `point_pair(…)`, optional
+            Their points.
+            numbers, shape (2, 3) [m]: Ground coordinates of both at the start, in the order of the bodies.
+            `point_pair(…)`: One point on each body.
+        lower : number [m or rad], optional
+            The angle, displacement or distance may not fall below this. An angle or displacement is that of the first
+            body relative to the second (ground counts as the second), from the placement.
+        upper : number [m or rad], optional
+            It may not rise above this.
+        dissipation : number at least 0 [s/m or s/rad], optional
+            Dissipation c: at small speeds v of impact the rebound has 1 − c v of it; default 0.
+        exponent : number at least 1, optional
+            Exponent n of the penetration, default 1. A rubber buffer has 1.5 to 3.
+        """
+        return made(Load, "loads.stop", locals())
+
+    @staticmethod
+    @checked
+    def contact(
+        *,
+        between: Sequence[str],
+        at: Ends,
+        surface: Surface2,
+        stiffness: Real,
+        width: Real,
+        radius: Real | None = None,
+        dissipation: Real | None = None,
+        exponent: Real | None = None,
+        friction: ContactFriction | None = None,
+    ) -> Load:
+        """A contact of a sphere or point of a body with a plane, sphere or capsule, with friction.
+
+        Parameters
+        ----------
+        between : list of 2 texts
+            The body with the sphere or point, and the body with the surface, which may be "ground".
+        at : numbers, shape (2, 3) [m] or `point_pair(…)`
+            Centre of the sphere on the first; on the second a point of the plane, or the centre of its surface.
+            numbers, shape (2, 3) [m]: Ground coordinates of both at the start, in the order of the bodies.
+            `point_pair(…)`: One point on each body.
+        surface : one of `surface2s`
+            Surface of the second body.
+        stiffness : number above 0 [N/m]
+            Stiffness k: force per penetration, to the power of the exponent if there is one.
+        width : number above 0 [m]
+            Width w of the onset, from w/2 before touching to w/2 behind it. A smaller width is sharper and needs
+            finer steps.
+        radius : number at least 0 [m], optional
+            Radius of the sphere, default 0: a point.
+        dissipation : number at least 0 [s/m], optional
+            Dissipation c: at small speeds v of impact the rebound has 1 − c v of it; default 0.
+        exponent : number at least 1, optional
+            Exponent n of the penetration, default 1. Two spheres have 1.5 by Hertz.
+        friction : `contact_friction(…)`, optional
+            Friction, default none.
+        """
+        return made(Load, "loads.contact", locals())
 
     @staticmethod
     @checked
@@ -2933,6 +3075,48 @@ class varying_torques(Kinds):
             "spline": As smooth as the values. It may overshoot.
         """
         return made(VaryingTorque, "varying_torques.table", locals())
+
+
+class surface2s(Kinds):
+    """Surface of a contact. Directions are in ground axes at the start and fixed in the body."""
+
+    @staticmethod
+    @checked
+    def plane(*, normal: Vector) -> Surface2:
+        """A plane.
+
+        Parameters
+        ----------
+        normal : numbers, shape (3,)
+            Normal to the free side, of any length but zero.
+        """
+        return made(Surface2, "surface2s.plane", locals())
+
+    @staticmethod
+    @checked
+    def sphere(*, radius: Real) -> Surface2:
+        """A sphere.
+
+        Parameters
+        ----------
+        radius : number at least 0 [m]
+            Its radius; 0 is a point.
+        """
+        return made(Surface2, "surface2s.sphere", locals())
+
+    @staticmethod
+    @checked
+    def capsule(*, half: Vector, radius: Real) -> Surface2:
+        """A cylinder with round ends.
+
+        Parameters
+        ----------
+        half : numbers, shape (3,) [m]
+            From its centre to the centre of the sphere at one end.
+        radius : number above 0 [m]
+            Its radius.
+        """
+        return made(Surface2, "surface2s.capsule", locals())
 
 
 class varying_pressures(Kinds):
@@ -3668,6 +3852,42 @@ class quantities(Kinds):
             Name of the load.
         """
         return made(Quantity, "quantities.spring_torque", locals())
+
+    @staticmethod
+    @checked
+    def contact_force(*, load: str) -> Quantity:
+        """Normal force of a stop or contact [N], or the torque of a stop of an angle [N m]; never negative.
+
+        Parameters
+        ----------
+        load : text
+            Name of the load.
+        """
+        return made(Quantity, "quantities.contact_force", locals())
+
+    @staticmethod
+    @checked
+    def contact_friction(*, load: str) -> Quantity:
+        """Size of the friction of a contact [N].
+
+        Parameters
+        ----------
+        load : text
+            Name of the load.
+        """
+        return made(Quantity, "quantities.contact_friction", locals())
+
+    @staticmethod
+    @checked
+    def penetration(*, load: str) -> Quantity:
+        """How deep a stop or contact is entered [m or rad]; negative before it, to the nearer limit.
+
+        Parameters
+        ----------
+        load : text
+            Name of the load.
+        """
+        return made(Quantity, "quantities.penetration", locals())
 
     @staticmethod
     @checked
@@ -4735,14 +4955,14 @@ class MachineKeys(Document):
     def add_load(self, name: str, kind: Load) -> Name:
         """Adds a load.
 
-        A force, torque, spring, damper or friction.
+        A force, torque, spring, damper, friction, drag, stop or contact.
 
         Parameters
         ----------
         name : text
             Its name among the `loads`.
         kind : one of `loads`
-            A force, torque, spring, damper or friction.
+            A force, torque, spring, damper, friction, drag, stop or contact.
         """
         return Name(name, self._add("loads", "load", name, kind))
 

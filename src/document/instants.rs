@@ -3,7 +3,7 @@
 use super::combined::{Distance, PowerOf, Relative};
 use super::measured::{
     AngularMomentum, JointReaction, JointSlide, LargestFibreStress, LargestSectionForce, OfSpring,
-    SectionComponent, SectionPlace,
+    OfStop, SectionComponent, SectionPlace,
 };
 use super::mechanics::Point;
 use crate::quantity::{Quantity, Vector};
@@ -82,6 +82,12 @@ pub enum Instant {
     Frequency(OfMode),
     /// The damping ratio of such a vibration.
     DampingRatio(OfMode),
+    /// Normal force of a stop or contact \[N\], or the torque of a stop of an angle [N m]; never negative.
+    ContactForce(OfStop),
+    /// Size of the friction of a contact \[N\].
+    ContactFriction(OfStop),
+    /// How deep a stop or contact is entered [m or rad]; negative before it, to the nearer limit.
+    Penetration(OfStop),
     /// Range of a projectile that is released at this instant \[m\].
     Range(Range),
     /// Von Mises stress by yield stress of a body of shells, aggregated over both faces of their Gauss points.

@@ -7,7 +7,7 @@ use flexbody_mechanics::model;
 use schemars::JsonSchema;
 use serde::Deserialize;
 
-/// A force, torque, spring, damper or friction.
+/// A force, torque, spring, damper, friction, drag, stop or contact.
 #[derive(Clone, Debug, Deserialize, JsonSchema)]
 #[serde(rename_all = "snake_case", deny_unknown_fields)]
 pub enum Load {
@@ -24,6 +24,12 @@ pub enum Load {
     Damping(Damping),
     /// Coulomb friction in a joint: size times tanh(rate / width).
     Friction(Friction),
+    /// Quadratic drag on a point of a body: c |u|² u / √(|u|² + w²) against its velocity u.
+    Drag(Drag),
+    /// Stops of a joint or of the distance of two points, which press back smoothly.
+    Stop(Stop),
+    /// A contact of a sphere or point of a body with a plane, sphere or capsule, with friction.
+    Contact(Contact),
     /// A pressure on shells of a body of `elements`, along the normals of the deformed surface.
     Pressure(Pressure),
     /// A force per area on shells of a body of `elements`, in a fixed direction.
@@ -278,6 +284,150 @@ pub struct Friction {
     pub width: Quantity,
 }
 
+/// Quadratic drag on a point of a body in a fluid at rest.
+#[derive(Clone, Debug, Deserialize, JsonSchema)]
+#[serde(deny_unknown_fields)]
+pub struct Drag {
+    /// The body.
+    pub body: String,
+    /// Where it acts, by name or in body axes; default the centre of mass.
+    pub point: Option<Point>,
+    /// Half the density times the drag coefficient times the area: force by the square of the speed.
+    #[schemars(extend("unit" = "N s²/m²", "minimum" = 0))]
+    pub coefficient: Quantity,
+    /// Speed w below which the drag goes smoothly to zero, default 0.001 m/s. Above it the drag is off by ½ w²/u².
+    #[serde(default = "slow")]
+    #[schemars(extend("unit" = "m/s", "exclusiveMinimum" = 0))]
+    pub width: Quantity,
+}
+
+/// The default width of drag \[m/s\].
+fn slow() -> Quantity {
+    Quantity::fixed(1e-3)
+}
+
+/// Stops of a joint or of a distance: N = k ρⁿ ρ' (1 + ³⁄₂ c δ̇), never negative, with the penetration δ and its smooth ramp ρ.
+/// Give `joint`, or `between` and `at`.
+#[derive(Clone, Debug, Deserialize, JsonSchema)]
+#[serde(deny_unknown_fields)]
+pub struct Stop {
+    /// Name of a revolute, prismatic, cylindrical or planar joint.
+    pub joint: Option<String>,
+    /// Motion of a cylindrical joint, default rotation.
+    pub motion: Option<Motion>,
+    /// Two bodies whose points are stopped; one of them may be "ground".
+    pub between: Option<[String; 2]>,
+    /// Their points.
+    pub at: Option<Ends>,
+    /// The angle, displacement or distance may not fall below this. An angle or displacement is that of the first body
+    /// relative to the second (ground counts as the second), from the placement.
+    #[schemars(extend("unit" = "m or rad"))]
+    pub lower: Option<Quantity>,
+    /// It may not rise above this.
+    #[schemars(extend("unit" = "m or rad"))]
+    pub upper: Option<Quantity>,
+    /// Stiffness k: force or torque per penetration, to the power of the exponent if there is one.
+    #[schemars(extend("unit" = "N/m or N m/rad", "exclusiveMinimum" = 0))]
+    pub stiffness: Quantity,
+    /// Dissipation c: at small speeds v of impact the rebound has 1 − c v of it; default 0.
+    #[serde(default = "nothing")]
+    #[schemars(extend("unit" = "s/m or s/rad", "minimum" = 0))]
+    pub dissipation: Quantity,
+    /// Width w of the onset, from w/2 before the limit to w/2 behind it. A smaller width is sharper and needs finer steps.
+    #[schemars(extend("unit" = "m or rad", "exclusiveMinimum" = 0))]
+    pub width: Quantity,
+    /// Exponent n of the penetration, default 1. A rubber buffer has 1.5 to 3.
+    #[serde(default = "linear")]
+    #[schemars(extend(
+        "unit" = "1",
+        "minimum" = 1,
+        "design_variable" = "the exponent says which law the numbers of a stop have"
+    ))]
+    pub exponent: f64,
+}
+
+/// The exponent 1.
+fn linear() -> f64 {
+    1.0
+}
+
+/// A contact of a sphere or point of the first body with a surface of the second: the normal force of a stop, and friction
+/// μ N v_t / √(v_t² + w²) against the tangential velocity v_t.
+#[derive(Clone, Debug, Deserialize, JsonSchema)]
+#[serde(deny_unknown_fields)]
+pub struct Contact {
+    /// The body with the sphere or point, and the body with the surface, which may be "ground".
+    pub between: [String; 2],
+    /// Centre of the sphere on the first; on the second a point of the plane, or the centre of its surface.
+    pub at: Ends,
+    /// Radius of the sphere, default 0: a point.
+    #[serde(default = "nothing")]
+    #[schemars(extend("unit" = "m", "minimum" = 0))]
+    pub radius: Quantity,
+    /// Surface of the second body.
+    pub surface: Surface,
+    /// Stiffness k: force per penetration, to the power of the exponent if there is one.
+    #[schemars(extend("unit" = "N/m", "exclusiveMinimum" = 0))]
+    pub stiffness: Quantity,
+    /// Dissipation c: at small speeds v of impact the rebound has 1 − c v of it; default 0.
+    #[serde(default = "nothing")]
+    #[schemars(extend("unit" = "s/m", "minimum" = 0))]
+    pub dissipation: Quantity,
+    /// Width w of the onset, from w/2 before touching to w/2 behind it. A smaller width is sharper and needs finer steps.
+    #[schemars(extend("unit" = "m", "exclusiveMinimum" = 0))]
+    pub width: Quantity,
+    /// Exponent n of the penetration, default 1. Two spheres have 1.5 by Hertz.
+    #[serde(default = "linear")]
+    #[schemars(extend(
+        "unit" = "1",
+        "minimum" = 1,
+        "design_variable" = "the exponent says which law the numbers of a contact have"
+    ))]
+    pub exponent: f64,
+    /// Friction, default none.
+    pub friction: Option<ContactFriction>,
+}
+
+/// Friction of a contact.
+#[derive(Clone, Debug, Deserialize, JsonSchema)]
+#[serde(deny_unknown_fields)]
+pub struct ContactFriction {
+    /// Coefficient of friction μ.
+    #[schemars(extend("unit" = "1", "minimum" = 0))]
+    pub coefficient: Quantity,
+    /// Tangential velocity w at which 71 % of it acts. Below it the contact creeps instead of sticking. A smaller width is
+    /// sharper and needs finer steps.
+    #[schemars(extend("unit" = "m/s", "exclusiveMinimum" = 0))]
+    pub width: Quantity,
+}
+
+/// Surface of a contact. Directions are in ground axes at the start and fixed in the body.
+#[derive(Clone, Debug, Deserialize, JsonSchema)]
+#[serde(rename_all = "snake_case", deny_unknown_fields)]
+pub enum Surface {
+    /// A plane.
+    Plane {
+        /// Normal to the free side, of any length but zero.
+        #[schemars(extend("unit" = "1"))]
+        normal: Vector,
+    },
+    /// A sphere.
+    Sphere {
+        /// Its radius; 0 is a point.
+        #[schemars(extend("unit" = "m", "minimum" = 0))]
+        radius: Quantity,
+    },
+    /// A cylinder with round ends.
+    Capsule {
+        /// From its centre to the centre of the sphere at one end.
+        #[schemars(extend("unit" = "m"))]
+        half: Vector,
+        /// Its radius.
+        #[schemars(extend("unit" = "m", "exclusiveMinimum" = 0))]
+        radius: Quantity,
+    },
+}
+
 /// A pressure on shells of a body of elements.
 #[derive(Clone, Debug, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
@@ -354,6 +504,9 @@ impl Load {
             Load::TorsionSpring(_) => "torsion_spring",
             Load::Damping(_) => "damping",
             Load::Friction(_) => "friction",
+            Load::Drag(_) => "drag",
+            Load::Stop(_) => "stop",
+            Load::Contact(_) => "contact",
             Load::Pressure(_) => "pressure",
             Load::Area(_) => "area",
             Load::Edge(_) => "edge",

@@ -48,6 +48,14 @@ pub struct OfSpring {
     pub load: String,
 }
 
+/// A stop or contact.
+#[derive(Clone, Debug, Deserialize, JsonSchema)]
+#[serde(deny_unknown_fields)]
+pub struct OfStop {
+    /// Name of the load.
+    pub load: String,
+}
+
 /// A direction and a point.
 #[derive(Clone, Debug, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]

@@ -15,7 +15,7 @@ use crate::math::scalar::COMPLEX_STEP;
 use crate::model::flexible::Quadratic;
 use crate::model::{DegreeOfFreedom, LoadKind};
 use crate::problem::Problem;
-use crate::system::loads::springs::SpringPart;
+use crate::system::loads::measured::LoadPart;
 use crate::system::measures::WrenchPart;
 use crate::system::placement::length_scale;
 use rayon::prelude::*;
@@ -264,9 +264,17 @@ fn size_of_instant(at: &Evaluated, instant: &Instant<f64>) -> f64 {
                 _ => force * length,
             }
         }
-        Instant::Spring(spring) => match (spring.part, &model.loads[spring.load].kind) {
-            (SpringPart::Tension, LoadKind::Spring { stiffness, .. }) => stiffness * length,
-            (SpringPart::Torque, LoadKind::TorsionSpring { stiffness, .. }) => *stiffness,
+        Instant::Load(measure) => match (measure.part, &model.loads[measure.load].kind) {
+            (LoadPart::Tension, LoadKind::Spring { stiffness, .. }) => stiffness * length,
+            (LoadPart::Torque, LoadKind::TorsionSpring { stiffness, .. }) => *stiffness,
+            (LoadPart::PenetrationAngle, _) => 1.0,
+            (LoadPart::NormalForce, LoadKind::JointStop { law, .. })
+            | (LoadPart::NormalForce, LoadKind::DistanceStop { law, .. }) => law.stiffness * length,
+            (LoadPart::NormalForce, LoadKind::Contact(own)) => own.law.stiffness * length,
+            (LoadPart::Friction, LoadKind::Contact(own)) => {
+                own.friction * own.law.stiffness * length
+            }
+            (LoadPart::NormalTorque, LoadKind::JointStop { law, .. }) => law.stiffness,
             _ => length,
         },
     }

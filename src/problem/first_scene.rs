@@ -48,8 +48,9 @@ pub(super) fn collapsed(problem: &Problem) -> Option<Finding> {
         "{apart}; only a spring without rest length and damping may start with its ends at one place"
     );
     let spring = || {
-        let spring = loads::without_length(&model)?;
-        Some((join(&join(&join("/loads", spring), "spring"), "at"), meet))
+        let name = loads::without_length(&model)?;
+        let load = join(&join("/loads", name), problem.written.loads[name].key());
+        Some((join(&load, "at"), meet))
     };
     let rod = rod.map(|pointer| (pointer, apart.to_owned()));
     let (pointer, expected) = rod.or_else(spring)?;

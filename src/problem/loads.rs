@@ -5,14 +5,16 @@ use super::placement::{Assembly, GROUND};
 use crate::math::scalar::unit;
 use crate::math::{Scalar, Vec3};
 use crate::model::{
-    Axes, DegreeOfFreedom, DistributedLoad, Load, LoadKind, Smoothness, Spread, TimeFunction,
+    Axes, Contact, DegreeOfFreedom, DistributedLoad, Load, LoadKind, NormalLaw, Smoothness, Spread,
+    Surface, TimeFunction,
 };
 use crate::prepared::Prepared;
 use crate::quantity::Vector;
 use crate::schema::Document;
-use crate::schema::joints::Joint;
+use crate::schema::joints::{Ends, Joint};
 use crate::schema::loads::{
-    Axes as WrittenAxes, Interpolation, Load as WrittenLoad, Motion, TimeFunction as Written,
+    Axes as WrittenAxes, Contact as WrittenContact, Interpolation, Load as WrittenLoad, Motion,
+    Stop, Surface as WrittenSurface, TimeFunction as Written,
 };
 use crate::structures::loads::edge_shares;
 use crate::structures::mesh::Edge;
@@ -70,19 +72,12 @@ fn kind<S: Scalar>(
             magnitude: course(assembly, torque.magnitude.parts()),
         },
         WrittenLoad::Spring(spring) => {
-            let end = |side: usize| {
-                let name = &spring.between[side];
-                (name, assembly.end(&spring.between, &spring.at, side))
-            };
-            let (a, b) = match spring.between[0] == GROUND {
-                true => (end(1), end(0)),
-                false => (end(0), end(1)),
-            };
+            let ends = ends(assembly, &spring.between, &spring.at);
             LoadKind::Spring {
-                body_a: body(a.0),
-                body_b: assembly.index(b.0),
-                point_a: a.1,
-                point_b: b.1,
+                body_a: ends.body_a,
+                body_b: ends.body_b,
+                point_a: ends.point_a,
+                point_b: ends.point_b,
                 rest_length: get(&spring.rest_length),
                 stiffness: get(&spring.stiffness),
                 cubic: get(&spring.cubic),
@@ -118,6 +113,16 @@ fn kind<S: Scalar>(
                 width: get(&friction.width),
             }
         }
+        WrittenLoad::Drag(drag) => LoadKind::Drag {
+            body: body(&drag.body),
+            point: drag.point.as_ref().map_or(Vec3::zeros(), |point| {
+                assembly.in_body(&drag.body, point) - assembly.pose(&drag.body).centre
+            }),
+            coefficient: get(&drag.coefficient),
+            width: get(&drag.width),
+        },
+        WrittenLoad::Stop(stop) => stop_of(document, assembly, stop),
+        WrittenLoad::Contact(contact) => LoadKind::Contact(contact_of(assembly, contact)),
         WrittenLoad::Pressure(load) => {
             let own = elements(document, &load.body);
             let shells = own.sets.face_sets[&load.faces].as_slice().into();
@@ -144,6 +149,106 @@ fn kind<S: Scalar>(
             distributed(&load.body, spread, load.magnitude.parts())
         }
     }
+}
+
+/// Both ends of a load: body A is not ground.
+struct BothEnds<S> {
+    body_a: usize,
+    body_b: Option<usize>,
+    point_a: Vec3<S>,
+    point_b: Vec3<S>,
+}
+
+fn ends<S: Scalar>(assembly: &Assembly<S>, between: &[String; 2], at: &Ends) -> BothEnds<S> {
+    let sides = match between[0] == GROUND {
+        true => [1, 0],
+        false => [0, 1],
+    };
+    let [body_a, body_b] = sides.map(|side| assembly.index(&between[side]));
+    let [point_a, point_b] = sides.map(|side| assembly.end(between, at, side));
+    BothEnds {
+        body_a: body_a.expect("a load acts on a body, not on ground"),
+        body_b,
+        point_a,
+        point_b,
+    }
+}
+
+fn stop_of<S: Scalar>(document: &Document, assembly: &Assembly<S>, stop: &Stop) -> LoadKind<S> {
+    let limit = |limit: &Option<crate::quantity::Quantity>| {
+        limit.as_ref().map(|limit| assembly.quantity(limit))
+    };
+    let limits = [limit(&stop.lower), limit(&stop.upper)];
+    let law = NormalLaw {
+        exponent: stop.exponent,
+        stiffness: assembly.quantity(&stop.stiffness),
+        dissipation: assembly.quantity(&stop.dissipation),
+        width: assembly.quantity(&stop.width),
+    };
+    match (&stop.joint, &stop.between, &stop.at) {
+        (Some(name), ..) => LoadKind::JointStop {
+            joint: joint(document, name).0,
+            dof: stopped(document, stop)
+                .expect("joints with stops are checked when a problem is read"),
+            counter: None,
+            limits,
+            law,
+        },
+        (None, Some(between), Some(at)) => {
+            let ends = ends(assembly, between, at);
+            LoadKind::DistanceStop {
+                body_a: ends.body_a,
+                body_b: ends.body_b,
+                point_a: ends.point_a,
+                point_b: ends.point_b,
+                limits,
+                law,
+            }
+        }
+        (None, ..) => unreachable!("what a stop stops is checked when a problem is read"),
+    }
+}
+
+fn contact_of<S: Scalar>(assembly: &Assembly<S>, contact: &WrittenContact) -> Contact<S> {
+    let get = |quantity: &crate::quantity::Quantity| assembly.quantity(quantity);
+    let ends = ends(assembly, &contact.between, &contact.at);
+    let turn = assembly.pose(&contact.between[1]).rotation;
+    let in_body = |direction: &Vector| turn.tr_mul(&assembly.ground(direction));
+    let friction = contact.friction.as_ref();
+    Contact {
+        body_a: ends.body_a,
+        body_b: ends.body_b,
+        point_a: ends.point_a,
+        radius: get(&contact.radius),
+        point_b: ends.point_b,
+        surface: match &contact.surface {
+            WrittenSurface::Plane { normal } => Surface::Plane {
+                normal: unit(in_body(normal)),
+            },
+            WrittenSurface::Sphere { radius } => Surface::Sphere {
+                radius: get(radius),
+            },
+            WrittenSurface::Capsule { half, radius } => Surface::Capsule {
+                half: in_body(half),
+                radius: get(radius),
+            },
+        },
+        law: NormalLaw {
+            exponent: contact.exponent,
+            stiffness: get(&contact.stiffness),
+            dissipation: get(&contact.dissipation),
+            width: get(&contact.width),
+        },
+        friction: friction.map_or(S::zero(), |own| get(&own.coefficient)),
+        // Without friction any width will do.
+        slip: friction.map_or(S::one(), |own| get(&own.width)),
+    }
+}
+
+/// The degree of freedom of a joint that a stop stops; `None` if it stops a distance.
+pub fn stopped(document: &Document, stop: &Stop) -> Option<DegreeOfFreedom> {
+    let joint = document.joints.get(stop.joint.as_ref()?)?;
+    dof(joint, stop.motion)
 }
 
 /// The elements of a body that has some.

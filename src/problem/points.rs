@@ -13,7 +13,7 @@ use crate::math::scalar::lift3;
 use crate::math::{Dual, Scalar, Vec3};
 use crate::quantity::Quantity;
 use crate::schema::Document;
-use crate::schema::joints::Joint;
+use crate::schema::joints::{Ends, Joint};
 use crate::schema::loads::Load;
 use crate::schema::mechanics::Shape;
 use crate::system::placement::length_scale;
@@ -325,6 +325,13 @@ pub(super) fn beside(problem: &Problem) -> Option<Finding> {
                 })
         })
     };
+    let ends = |pointer: &str, between: &[String; 2], at: &Ends| {
+        let mut sides = (0..2).filter(|&side| is_point(&between[side]));
+        sides.find_map(|side| {
+            let end = assembly.end(between, at, side);
+            away(join(pointer, "at"), &between[side], end)
+        })
+    };
     let loads = || {
         written.loads.iter().find_map(|(name, load)| {
             let pointer = join(&join("/loads", name), load.key());
@@ -341,13 +348,27 @@ pub(super) fn beside(problem: &Problem) -> Option<Finding> {
                 Load::Torque(torque) if is_point(&torque.body) => {
                     Some(turned(join(&pointer, "body"), &torque.body, "a torque on"))
                 }
-                Load::Spring(spring) => {
-                    let sides = (0..2).filter(|&side| is_point(&spring.between[side]));
-                    sides.into_iter().find_map(|side| {
-                        let end = assembly.end(&spring.between, &spring.at, side);
-                        away(join(&pointer, "at"), &spring.between[side], end)
-                    })
+                Load::Drag(drag) if is_point(&drag.body) => {
+                    let place = assembly.in_body(&drag.body, drag.point.as_ref()?);
+                    let centre = assembly.pose(&drag.body).centre;
+                    away(join(&pointer, "point"), &drag.body, place - centre)
                 }
+                Load::Spring(spring) => ends(&pointer, &spring.between, &spring.at),
+                Load::Contact(own) => ends(&pointer, &own.between, &own.at).or_else(|| {
+                    let sides = own.between.iter();
+                    let body = sides
+                        .zip([own.radius.value > 0.0, true])
+                        .find(|(body, _)| is_point(body));
+                    let (body, extends) = body?;
+                    (own.friction.is_some() && extends).then(|| {
+                        turned(
+                            join(&pointer, "between"),
+                            body,
+                            "friction at the surface of",
+                        )
+                    })
+                }),
+                Load::Stop(stop) => ends(&pointer, stop.between.as_ref()?, stop.at.as_ref()?),
                 Load::Damping(damping) => {
                     let joint = written.joints.get(&damping.joint)?;
                     let body = joint.between().iter().find(|body| is_point(body))?;
@@ -359,9 +380,11 @@ pub(super) fn beside(problem: &Problem) -> Option<Finding> {
                 }
                 // Elements are no point masses.
                 Load::Pressure(_) | Load::Area(_) | Load::Edge(_) | Load::Line(_) => None,
-                Load::Force(_) | Load::Torque(_) | Load::TorsionSpring(_) | Load::Friction(_) => {
-                    None
-                }
+                Load::Force(_)
+                | Load::Torque(_)
+                | Load::TorsionSpring(_)
+                | Load::Friction(_)
+                | Load::Drag(_) => None,
             }
         })
     };

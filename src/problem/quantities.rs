@@ -1,6 +1,7 @@
 //! The functions of a scene from those of a problem file.
 
 use super::flexible::{FlexibleBodies, Sections, station, stations};
+use super::loads::stopped;
 use super::placement::{Assembly, GROUND};
 use super::starting_angles::{starting_angle, starting_turn};
 use crate::aggregates::rho_of;
@@ -17,12 +18,13 @@ use crate::model::{Axes, DegreeOfFreedom};
 use crate::quantity::vector;
 use crate::schema::Document;
 use crate::schema::functions::{self as written, CountedFrom, Function as Written, OfMotion};
-use crate::schema::measured::{Bound as Side, JointReaction, OfSpring, ReactionAxes};
+use crate::schema::loads::Load;
+use crate::schema::measured::{Bound as Side, JointReaction, ReactionAxes};
 use crate::schema::mechanics::Point;
 use crate::schema::statics::Frequency;
 use crate::system::angular_momentum::AngularMomentum;
 use crate::system::equilibrium::{DampedVibration, Follow, Vibrations};
-use crate::system::loads::springs::{Spring, SpringPart};
+use crate::system::loads::measured::{LoadMeasure, LoadPart};
 use crate::system::measures::{End, Wrench, WrenchPart};
 
 /// Makes the functions of a scene.
@@ -238,9 +240,18 @@ impl<S: Scalar> FunctionBuilder<'_, S> {
             I::Slide(slide) => Instant::Slide(self.joint(&slide.joint)),
             I::JointForce(of) => self.reaction(of, WrenchPart::Force),
             I::JointMoment(of) => self.reaction(of, WrenchPart::Moment),
-            I::SpringLength(of) => self.spring(of, SpringPart::Length),
-            I::SpringForce(of) => self.spring(of, SpringPart::Tension),
-            I::SpringTorque(of) => self.spring(of, SpringPart::Torque),
+            I::SpringLength(of) => self.of_load(&of.load, LoadPart::Length),
+            I::SpringForce(of) => self.of_load(&of.load, LoadPart::Tension),
+            I::SpringTorque(of) => self.of_load(&of.load, LoadPart::Torque),
+            I::ContactForce(of) => match self.stops_angle(&of.load) {
+                true => self.of_load(&of.load, LoadPart::NormalTorque),
+                false => self.of_load(&of.load, LoadPart::NormalForce),
+            },
+            I::ContactFriction(of) => self.of_load(&of.load, LoadPart::Friction),
+            I::Penetration(of) => match self.stops_angle(&of.load) {
+                true => self.of_load(&of.load, LoadPart::PenetrationAngle),
+                false => self.of_load(&of.load, LoadPart::Penetration),
+            },
             I::Energy(part) => Instant::Energy(match part {
                 Energy::Kinetic => EnergyPart::Kinetic,
                 Energy::Potential => EnergyPart::Potential,
@@ -338,11 +349,19 @@ impl<S: Scalar> FunctionBuilder<'_, S> {
         load.expect("a function is of a load, which is checked")
     }
 
-    fn spring(&self, of: &OfSpring, part: SpringPart) -> Instant<S> {
-        Instant::Spring(Spring {
-            load: self.load(&of.load),
+    fn of_load(&self, name: &str, part: LoadPart) -> Instant<S> {
+        Instant::Load(LoadMeasure {
+            load: self.load(name),
             part,
         })
+    }
+
+    /// Whether a load is the stop of an angle.
+    fn stops_angle(&self, name: &str) -> bool {
+        let Some(Load::Stop(stop)) = self.document.loads.get(name) else {
+            return false;
+        };
+        stopped(self.document, stop) == Some(DegreeOfFreedom::Rotation)
     }
 
     fn reaction(&self, of: &JointReaction, part: WrenchPart) -> Instant<S> {

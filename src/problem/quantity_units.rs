@@ -15,7 +15,7 @@ const OR: &str = " or ";
 
 /// Gives numbers of loads in joints the unit of the joint's motion.
 pub(super) fn name_units_of_joints(variables: &mut [Variable], scene: &Scene<f64>) {
-    for variable in variables {
+    for variable in variables.iter_mut() {
         let Some((slide, turn)) = variable.unit.split_once(OR) else {
             continue;
         };
@@ -24,9 +24,10 @@ pub(super) fn name_units_of_joints(variables: &mut [Variable], scene: &Scene<f64
             let name = keys.get(1).filter(|_| keys[0] == "loads")?;
             let load = scene.model.loads.iter().find(|load| load.name == *name)?;
             match load.kind {
-                LoadKind::Damping { dof, .. } | LoadKind::Friction { dof, .. } => {
-                    Some(dof == DegreeOfFreedom::Translation)
-                }
+                LoadKind::DistanceStop { .. } => Some(true),
+                LoadKind::Damping { dof, .. }
+                | LoadKind::Friction { dof, .. }
+                | LoadKind::JointStop { dof, .. } => Some(dof == DegreeOfFreedom::Translation),
                 LoadKind::BallDamping { .. } => Some(false),
                 _ => None,
             }
@@ -34,6 +35,29 @@ pub(super) fn name_units_of_joints(variables: &mut [Variable], scene: &Scene<f64
         if let Some(slides) = slides {
             variable.unit = if slides { slide } else { turn }.to_owned();
         }
+    }
+    for variable in variables {
+        let exponent = variable.paths.iter().find_map(|path| exponent(path, scene));
+        if let Some(exponent) = exponent.filter(|n| *n != 1.0) {
+            variable.unit = format!("{}^{exponent}", variable.unit);
+        }
+    }
+}
+
+/// The exponent of the normal law whose stiffness is at a path.
+fn exponent(path: &str, scene: &Scene<f64>) -> Option<f64> {
+    let keys = keys(path);
+    let [section, name, _, key] = &keys[..] else {
+        return None;
+    };
+    let load = scene.model.loads.iter().find(|load| load.name == *name)?;
+    if section != "loads" || key != "stiffness" {
+        return None;
+    }
+    match &load.kind {
+        LoadKind::JointStop { law, .. } | LoadKind::DistanceStop { law, .. } => Some(law.exponent),
+        LoadKind::Contact(contact) => Some(contact.law.exponent),
+        _ => None,
     }
 }
 

@@ -2,6 +2,7 @@
 
 use super::aggregates::rho_of;
 use super::flexible::{FlexibleBodies, HeldPlace};
+use super::loads::stopped;
 use super::mass::mass_properties;
 use super::placement::Assembly;
 use super::quantities::FunctionBuilder;
@@ -11,7 +12,7 @@ use crate::functions::{Function, Scene, TerminalEvent};
 use crate::math::rotation::matrix;
 use crate::math::scalar::lift3;
 use crate::math::{Scalar, Vec3};
-use crate::model::{Mobility, Model, RigidBody};
+use crate::model::{DegreeOfFreedom, Mobility, Model, RigidBody};
 use crate::quantity::{Vector, vector};
 use crate::schema::Document;
 use crate::schema::flexible::Start;
@@ -188,13 +189,20 @@ pub(super) fn turning<S: Scalar>(document: &Document, x: &[S]) -> Option<Turning
     })
 }
 
-/// Gives torsion springs counters of their turns, which start as the angles of their joints do.
+/// Gives torsion springs and stops of angles counters of their turns, which start as the angles of their joints do.
 fn count_turns<S: Scalar>(document: &Document, builder: &FunctionBuilder<S>, model: &mut Model<S>) {
     let numbering = Numbering::new(model);
     let (q, _) = guess(model);
     for (k, load) in document.loads.values().enumerate() {
-        if let Load::TorsionSpring(spring) = load {
-            let rotation = builder.joint_angle(&spring.joint);
+        let joint = match load {
+            Load::TorsionSpring(spring) => Some(&spring.joint),
+            Load::Stop(stop) if stopped(document, stop) == Some(DegreeOfFreedom::Rotation) => {
+                stop.joint.as_ref()
+            }
+            _ => None,
+        };
+        if let Some(joint) = joint {
+            let rotation = builder.joint_angle(joint);
             let twist = rotation.angle(&numbering, &q).re();
             model.count_turns(k, twist + rotation.first_turns(twist));
         }

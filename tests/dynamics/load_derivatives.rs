@@ -13,7 +13,8 @@ use flexbody_mathematics::math::{Complex64, Parameters, Scalar};
 use flexbody_mechanics::integrate::implicit::ggl::{Equations, StepState};
 use flexbody_mechanics::model::Interpolation;
 use flexbody_mechanics::model::{
-    Axes, DegreeOfFreedom, JointKind, Load, LoadKind, Model, Smoothness, TimeFunction,
+    Axes, Contact, DegreeOfFreedom, JointKind, Load, LoadKind, Model, NormalLaw, Smoothness,
+    Surface, TimeFunction,
 };
 use flexbody_mechanics::system::InMotion;
 use flexbody_mechanics::system::initial;
@@ -112,6 +113,115 @@ fn kinds(body_b: Option<usize>, numbers: &mut Numbers) -> Vec<(JointKind, LoadKi
         coefficient,
     };
     all.push((Spherical, ball));
+    for width in [0.7, 3.0] {
+        let drag = LoadKind::Drag {
+            body: 1,
+            point: numbers.vector(),
+            coefficient: 0.8,
+            width,
+        };
+        all.push((Spherical, drag));
+    }
+    all.extend(stops(body_b, numbers));
+    all.extend(contacts(body_b, numbers));
+    all
+}
+
+/// Contacts with every surface: deep and within the onset, sliding and nearly sticking, of spheres and points.
+fn contacts(body_b: Option<usize>, numbers: &mut Numbers) -> Vec<(JointKind, LoadKind<f64>)> {
+    let half = numbers.vector();
+    let mut all = Vec::new();
+    for (exponent, width, friction, slip) in [
+        (1.0, 0.3, 0.4, 0.02),
+        (1.5, 0.3, 0.7, 30.0),
+        (1.5, 40.0, 0.5, 0.5),
+        (1.0, 0.3, 0.0, 1.0),
+    ] {
+        for (radius, surface) in [
+            (
+                20.0,
+                Surface::Plane {
+                    normal: numbers.vector().normalize(),
+                },
+            ),
+            (6.0, Surface::Sphere { radius: 4.0 }),
+            (0.0, Surface::Sphere { radius: 11.0 }),
+            (
+                6.0,
+                Surface::Capsule {
+                    half: half * 30.0,
+                    radius: 5.0,
+                },
+            ),
+            (
+                6.0,
+                Surface::Capsule {
+                    half: half * 1e-3,
+                    radius: 5.0,
+                },
+            ),
+        ] {
+            let contact = Contact {
+                body_a: 1,
+                body_b,
+                point_a: numbers.vector(),
+                radius,
+                point_b: numbers.vector(),
+                surface,
+                law: NormalLaw {
+                    exponent,
+                    stiffness: 0.3,
+                    dissipation: 0.1,
+                    width,
+                },
+                friction,
+                slip,
+            };
+            all.push((JointKind::Spherical, LoadKind::Contact(contact)));
+        }
+    }
+    all
+}
+
+/// Stops that are entered deeply, that press from both sides, and that are within their onset.
+fn stops(body_b: Option<usize>, numbers: &mut Numbers) -> Vec<(JointKind, LoadKind<f64>)> {
+    use JointKind::{Prismatic, Revolute, Spherical};
+    let law = |exponent: f64, width: f64| NormalLaw {
+        exponent,
+        stiffness: 3.0,
+        dissipation: 0.05,
+        width,
+    };
+    let mut all = Vec::new();
+    for (limits, law) in [
+        ([Some(4.0), None], law(1.0, 0.3)),
+        ([None, Some(-4.0)], law(1.5, 0.3)),
+        ([Some(3.5), Some(-4.5)], law(2.0, 0.1)),
+        ([Some(0.5), Some(0.6)], law(1.0, 12.0)),
+    ] {
+        for (kind, dof) in [
+            (Revolute, DegreeOfFreedom::Rotation),
+            (Prismatic, DegreeOfFreedom::Translation),
+        ] {
+            let stop = LoadKind::JointStop {
+                joint: 0,
+                dof,
+                counter: None,
+                limits,
+                law: law.clone(),
+            };
+            all.push((kind, stop));
+        }
+        let distance = LoadKind::DistanceStop {
+            body_a: 1,
+            body_b,
+            point_a: numbers.vector(),
+            point_b: numbers.vector(),
+            limits,
+            law,
+        };
+        all.push((Spherical, distance));
+    }
     all
 }
 
@@ -254,8 +364,17 @@ fn potentials() {
         let q = lift(&case.q);
         let exact = case.by_parameters(|model| energy(model, &q));
         agree(&case, "energy by parameters", &parameters(&cot), &exact);
-        if matches!(case.model.loads[0].kind, LoadKind::Spring { .. }) {
-            // At rest, the force of a spring is minus the derivative of its energy.
+        if matches!(
+            case.model.loads[0].kind,
+            LoadKind::Spring { .. }
+                | LoadKind::JointStop {
+                    dof: DegreeOfFreedom::Translation,
+                    ..
+                }
+                | LoadKind::DistanceStop { .. }
+                | LoadKind::Contact(_)
+        ) {
+            // At rest, the force of a spring, a stop or a contact is minus the derivative of its energy.
             let still = forces(&case, &case.model, &case.q, &[0.0; 12], TIME);
             let down: Vec<f64> = y.iter().map(|y| -y / 0.7).collect();
             agree(&case, "force from energy", &still, &down);
@@ -375,7 +494,7 @@ fn forces_between_two_bodies_balance() {
     for case in cases() {
         if matches!(
             case.model.loads[0].kind,
-            LoadKind::Force { .. } | LoadKind::Torque { .. }
+            LoadKind::Force { .. } | LoadKind::Torque { .. } | LoadKind::Drag { .. }
         ) || case.model.joints[0].body_b.is_none()
         {
             continue;

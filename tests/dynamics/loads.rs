@@ -150,6 +150,36 @@ fn gradients_of_damping_and_friction() {
     }
 }
 
+#[test]
+fn gradients_of_drag() {
+    assert_gradients(json!({"drag": {
+        "body": "box", "point": [0.1, 0.05, -0.1], "coefficient": 0.9, "width": 0.3}}));
+}
+
+/// A fall from rest with drag has the velocity v tanh(g t / v), v² = m g / c.
+#[test]
+fn a_fall_with_drag_comes_to_its_terminal_velocity() {
+    let (mass, coefficient): (f64, f64) = (2.0, 0.5);
+    for (duration, method) in [
+        (0.7_f64, json!("dop853")),
+        (20.0, json!({"radau": {"stages": 3}})),
+    ] {
+        let file = json!({
+            "version": 1, "name": "fall",
+            "bodies": {"drop": {"shape": "point", "mass": mass}},
+            "loads": {"air": {"drag": {"body": "drop", "coefficient": coefficient}}},
+            "simulation": {"duration": duration, "method": method},
+            "functions": {"v": {"final": {"velocity": {"body": "drop", "direction": [0, -1, 0]}}}}
+        });
+        let problem = Problem::parse(&file.to_string(), "fall.json", &[])
+            .unwrap_or_else(|faults| panic!("{faults}"));
+        let found = simulate(&problem, &[]).expect("runs").at.function(0).value;
+        let terminal = (mass * 9.81 / coefficient).sqrt();
+        let exact = terminal * (9.81 * duration / terminal).tanh();
+        assert!((found - exact).abs() < 1e-6, "{found} {exact}");
+    }
+}
+
 /// All kinds of load at once by every method, with equal and adaptive steps. Explicit methods need
 /// only forces, implicit ones also their Jacobians.
 #[test]
@@ -259,6 +289,12 @@ fn motions_in_closed_form() {
             json!({"spring": {"between": ["ground", "body"], "at": [[-1, 0, 0], [0, 0, 0]],
                    "rest_length": 1, "stiffness": 18, "damping": 12}}),
             (-3.0_f64).exp(),
+        ),
+        (
+            // m v' = −c v²: x = (m/c) ln(1 + c t / m).
+            "prismatic",
+            json!({"drag": {"body": "body", "coefficient": 3, "width": 1e-4}}),
+            m / 3.0 * (1.0 + 3.0 / m).ln(),
         ),
         (
             // About a rest angle a: φ = a + (1/ω) sin ω t − a cos ω t, ω = 2.

@@ -15,7 +15,7 @@ use flexbody_mechanics::model::{
 };
 use flexbody_mechanics::system::Numbering;
 use flexbody_mechanics::system::angular_momentum::AngularMomentum;
-use flexbody_mechanics::system::loads::springs::{Spring, SpringPart};
+use flexbody_mechanics::system::loads::measured::{LoadMeasure, LoadPart};
 use flexbody_mechanics::system::measures::{End, Wrench, WrenchPart};
 use flexbody_mechanics::system::observe::{observe, reactions};
 use reference::flexible::{quadratic, swing, swing_of};
@@ -55,12 +55,12 @@ fn functions(model: &Model<f64>, first: usize, numbers: &mut Numbers) -> Vec<Fun
         all.push(Instant::Slide(joint));
     }
     for (load, own) in model.loads.iter().enumerate() {
-        let parts: &[SpringPart] = match own.kind {
-            LoadKind::Spring { .. } => &[SpringPart::Length, SpringPart::Tension],
-            LoadKind::TorsionSpring { .. } => &[SpringPart::Torque],
+        let parts: &[LoadPart] = match own.kind {
+            LoadKind::Spring { .. } => &[LoadPart::Length, LoadPart::Tension],
+            LoadKind::TorsionSpring { .. } => &[LoadPart::Torque],
             _ => &[],
         };
-        let spring = |&part| Instant::Spring(Spring { load, part });
+        let spring = |&part| Instant::Load(LoadMeasure { load, part });
         all.extend(parts.iter().map(spring));
     }
     all.push(Instant::AngularMomentum(AngularMomentum {

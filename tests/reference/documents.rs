@@ -93,6 +93,21 @@ pub fn value(file: &Value, function: &str) -> f64 {
     run(file).at.function(index.expect("a function")).value
 }
 
+/// Makes numbers of a file design variables that are named by their paths. Positive ones stay positive.
+pub fn vary(file: &mut Value, paths: &[String]) {
+    let one = |path: &String| {
+        let start = file.pointer(path).and_then(Value::as_f64);
+        let start = start.expect("a number");
+        let variable = match start > 0.0 {
+            true => json!({"path": path, "lower": 0.1 * start}),
+            false => json!({"path": path}),
+        };
+        (path.clone(), variable)
+    };
+    let all: Map<_, _> = paths.iter().map(one).collect();
+    file["variables"] = all.into();
+}
+
 /// Optimises a problem from its start.
 pub fn optimised(problem: &Problem) -> Optimisation {
     let mut progress = |_: &_| ControlFlow::Continue(());

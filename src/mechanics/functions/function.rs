@@ -279,7 +279,7 @@ impl<S: Scalar> Function<S> {
             Instant::Reaction(wrench) => Some(Part::Joint(&mut wrench.joint)),
             Instant::Slide(joint) => Some(Part::Joint(joint)),
             Instant::JointRate { joint, .. } => Some(Part::Joint(joint)),
-            Instant::Spring(spring) => Some(Part::Load(&mut spring.load)),
+            Instant::Load(measure) => Some(Part::Load(&mut measure.load)),
             Instant::Power(load) => Some(Part::Load(load)),
             _ => None,
         })
@@ -346,7 +346,7 @@ impl<S: Scalar> Instant<S> {
             | Instant::Vibration(_)
             | Instant::JointRate { .. }
             | Instant::Slide(_)
-            | Instant::Spring(_) => {}
+            | Instant::Load(_) => {}
             Instant::Rotation(rotation) => rotation.for_each_body(&mut |body| visit(body, None)),
             Instant::Range { projectile, gate } => {
                 visit(&mut projectile.body, Some(&mut projectile.point));

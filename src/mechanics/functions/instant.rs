@@ -9,7 +9,7 @@ use crate::math::{Scalar, Vec3, parameters};
 use crate::model::DegreeOfFreedom;
 use crate::model::flexible::Quadratic;
 use crate::system::angular_momentum::AngularMomentum;
-use crate::system::loads::springs::{Spring, SpringPart};
+use crate::system::loads::measured::{LoadMeasure, LoadPart};
 use crate::system::measures::{Wrench, WrenchPart};
 use std::sync::Arc;
 
@@ -214,8 +214,8 @@ pub enum Instant<S> {
     },
     /// Displacement of body A of a joint against body B along its axis \[m\].
     Slide(usize),
-    /// Length, force or torque of a spring \[m, N or N m\].
-    Spring(Spring),
+    /// Quantity of a spring, a stop or a contact, such as its force.
+    Load(LoadMeasure),
     /// Rotation of a body about an axis, continuous in time \[rad\]. At t = 0 it has the turns of a joint's start, or is in
     /// (−2π, 2π].
     Rotation(Rotation<S>),
@@ -255,7 +255,7 @@ parameters!(enum Instant {
     Vibration(of;),
     JointRate { joint, dof; },
     Slide(joint;),
-    Spring(spring;),
+    Load(measure;),
     Rotation(; rotation),
     Range {; projectile, gate },
 });
@@ -295,10 +295,11 @@ impl<S: Scalar> Instant<S> {
                 DegreeOfFreedom::Translation => "m/s",
             },
             Instant::Slide(_) => "m",
-            Instant::Spring(spring) => match spring.part {
-                SpringPart::Length => "m",
-                SpringPart::Tension => "N",
-                SpringPart::Torque => "N m",
+            Instant::Load(measure) => match measure.part {
+                LoadPart::Length | LoadPart::Penetration => "m",
+                LoadPart::PenetrationAngle => "rad",
+                LoadPart::Tension | LoadPart::NormalForce | LoadPart::Friction => "N",
+                LoadPart::Torque | LoadPart::NormalTorque => "N m",
             },
             Instant::Rotation(_) => "rad",
         }
@@ -356,10 +357,14 @@ impl<S: Scalar> Instant<S> {
             },
             Instant::JointRate { .. } => "joint rate",
             Instant::Slide(_) => "slide",
-            Instant::Spring(spring) => match spring.part {
-                SpringPart::Length => "spring length",
-                SpringPart::Tension => "spring force",
-                SpringPart::Torque => "spring torque",
+            Instant::Load(measure) => match measure.part {
+                LoadPart::Length => "spring length",
+                LoadPart::Tension => "spring force",
+                LoadPart::Torque => "spring torque",
+                LoadPart::Penetration | LoadPart::PenetrationAngle => "penetration",
+                LoadPart::NormalForce => "contact force",
+                LoadPart::NormalTorque => "contact torque",
+                LoadPart::Friction => "friction",
             },
             Instant::Rotation(_) => "rotation",
             Instant::Range { .. } => "range",
@@ -389,7 +394,7 @@ impl<S: Scalar> Instant<S> {
             | Instant::Power(_)
             | Instant::JointRate { .. }
             | Instant::Slide(_)
-            | Instant::Spring(_)
+            | Instant::Load(_)
             | Instant::Rotation(_)
             | Instant::Range { .. } => None,
         }

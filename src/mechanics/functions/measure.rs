@@ -8,7 +8,7 @@ use crate::math::soft_max::SoftMax;
 use crate::math::{Scalar, Vec3};
 use crate::system::bodies::add6;
 use crate::system::joints::JointCotangent;
-use crate::system::loads::{springs, work};
+use crate::system::loads::{measured, work};
 use crate::system::marker::{self, MarkerKinematics};
 use crate::system::{BodyMotion, flexible, measures};
 
@@ -142,7 +142,7 @@ impl<S: Scalar> Instant<S> {
                 work::joint_rate(&at.in_motion(&at.motions()), (*joint, *dof))
             }
             Instant::Slide(joint) => measures::slide(&at.model.joints[*joint], &at.motions()),
-            Instant::Spring(spring) => springs::value(&at.in_motion(&at.motions()), *spring),
+            Instant::Load(of) => measured::value(&at.in_motion(&at.motions()), *of),
             Instant::Rotation(rotation) => at.rotation(rotation, turns),
             Instant::Range { projectile, gate } => {
                 at.flight(projectile).range(projectile.ground) * at.openness(gate, turns)
@@ -375,10 +375,10 @@ impl Instant<f64> {
                 let here = at.in_motion(&motions);
                 measures::pull_slide(&here, *joint, weight, &mut out.of_states());
             }
-            (Instant::Spring(spring), _) => {
+            (Instant::Load(of), _) => {
                 let motions = at.motions();
                 let here = at.in_motion(&motions);
-                springs::pull_back(&here, *spring, weight, &mut out.of_states());
+                measured::pull_back(&here, *of, weight, &mut out.of_states());
             }
             (Instant::Rotation(rotation), Instant::Rotation(own)) => {
                 rotation.pull_back((at.numbering, at.q), weight, out.y, own);

@@ -9,7 +9,7 @@ use super::snapshot::Snapshot;
 use crate::integrate::Trajectory;
 use crate::math::Vec3;
 use crate::model::Model;
-use crate::system::loads::springs::{Spring, SpringPart};
+use crate::system::loads::measured::{LoadMeasure, LoadPart};
 use crate::system::placement::length_scale;
 
 /// Smallest speed, relative to the change of velocity between two samples, that the samples
@@ -36,13 +36,13 @@ pub fn vanishing(
     let length = length_scale(model);
     let (norm, name, size) = match instant {
         Instant::Speed { .. } => (instant.clone(), "speed", length / run.duration),
-        Instant::Spring(Spring {
+        Instant::Load(LoadMeasure {
             load,
-            part: SpringPart::Length | SpringPart::Tension,
+            part: LoadPart::Length | LoadPart::Tension,
         }) => {
-            let (load, part) = (*load, SpringPart::Length);
+            let (load, part) = (*load, LoadPart::Length);
             (
-                Instant::Spring(Spring { load, part }),
+                Instant::Load(LoadMeasure { load, part }),
                 "length of the spring",
                 length,
             )

@@ -242,7 +242,12 @@ fn vibration(model: &Model<f64>, load: &LoadKind<f64>) -> Option<(f64, f64)> {
         | LoadKind::Torque { .. }
         | LoadKind::Damping { .. }
         | LoadKind::BallDamping { .. }
-        | LoadKind::Friction { .. } => return None,
+        | LoadKind::Friction { .. }
+        | LoadKind::Drag { .. }
+        // They vibrate only while they touch, where the error of the steps sees it.
+        | LoadKind::JointStop { .. }
+        | LoadKind::DistanceStop { .. }
+        | LoadKind::Contact(_) => return None,
     };
     let omega = (stiffness * inverse).sqrt();
     (omega > 0.0).then(|| (omega, 0.5 * damping * omega / stiffness))

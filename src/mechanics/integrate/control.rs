@@ -342,6 +342,20 @@ impl Controller {
         }
     }
 
+    /// As [`Controller::give_up`], for a step over a contact. The next step ends after this part of it.
+    pub fn give_up_over(&mut self, part: f64) -> bool {
+        match &mut self.plan {
+            StepPlan::Given { .. } => true,
+            StepPlan::Chosen { width, .. } => {
+                self.uncut = None;
+                *width *= part;
+                self.rejected = true;
+                self.headway.reject();
+                *width < self.least
+            }
+        }
+    }
+
     /// The reason why the march ended early, if it did.
     pub fn stopped(&self) -> Option<Stop> {
         self.stopped

@@ -22,7 +22,7 @@ use super::scale::Scale;
 use super::settings::{Settings, Spacing};
 use crate::math::Scalar;
 use crate::model::load::LoadKind;
-use crate::model::{Model, RigidBody};
+use crate::model::{DegreeOfFreedom, Model, NormalLaw, RigidBody};
 use crate::system::{BodyMotion, flexible, loads};
 
 /// Smallest change of energy that can reject a run, relative to X + K.
@@ -240,6 +240,9 @@ impl Ledger {
         if S::INFINITESIMAL || !settings.method.is_adaptive() || !model.conserves_energy() {
             return None;
         }
+        let stored = |law: &NormalLaw<S>, depth: f64| {
+            law.stiffness.re() * depth.powf(law.exponent + 1.0) / (law.exponent + 1.0)
+        };
         let springs = model.loads.iter().map(|load| match &load.kind {
             LoadKind::Spring {
                 stiffness, cubic, ..
@@ -248,12 +251,19 @@ impl Ledger {
                 0.5 * square * (stiffness.re().abs() + 0.5 * cubic.re().abs() * square)
             }
             LoadKind::TorsionSpring { stiffness, .. } => 0.5 * stiffness.re().abs(),
+            LoadKind::JointStop { dof, law, .. } => match dof {
+                DegreeOfFreedom::Rotation => stored(law, 1.0),
+                DegreeOfFreedom::Translation => stored(law, scale.length),
+            },
+            LoadKind::DistanceStop { law, .. } => stored(law, scale.length),
+            LoadKind::Contact(own) => stored(&own.law, scale.length),
             LoadKind::Force { .. }
             | LoadKind::Distributed(_)
             | LoadKind::Torque { .. }
             | LoadKind::Damping { .. }
             | LoadKind::BallDamping { .. }
-            | LoadKind::Friction { .. } => 0.0,
+            | LoadKind::Friction { .. }
+            | LoadKind::Drag { .. } => 0.0,
         });
         let square = scale.length * scale.length;
         let elastic = model.flexible.iter().map(|body| {

@@ -92,6 +92,19 @@ pub enum IntegrationFailure {
         /// Estimated error, relative to the scene's lengths and speeds.
         error: f64,
     },
+    /// A given step passes over a contact.
+    #[error(
+        "the step that ends at t = {time:.6e} s (step {step}) passes over a contact of load \"{load}\", which \
+         comes and goes within it; take more \"steps\", or a \"tolerance\""
+    )]
+    MissedContact {
+        /// The load.
+        load: String,
+        /// Time of the step's end \[s\].
+        time: f64,
+        /// Step number, from 1.
+        step: usize,
+    },
     /// Stability, not accuracy, bounds the steps of an explicit method.
     #[error(
         "the scene is stiff at t = {time:.6e} s (step {step}): an explicit method needs steps far \

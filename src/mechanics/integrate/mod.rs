@@ -20,6 +20,7 @@ pub mod schedule;
 pub mod settings;
 mod singular;
 mod stops;
+pub mod touches;
 pub mod trajectory;
 pub mod work;
 

@@ -298,15 +298,27 @@ impl Plane {
                     joint,
                     dof: DegreeOfFreedom::Rotation,
                     ..
+                }
+                | LoadKind::JointStop {
+                    joint,
+                    dof: DegreeOfFreedom::Rotation,
+                    ..
                 } => {
                     let joint = &model.joints[*joint];
                     let n = turned.normals[joint.body_a];
                     let e = &joint.frame_a.axes[2];
                     examiner.vanishes((e - n * n.dot(e)).as_slice(), 1.0, what);
                 }
+                LoadKind::Contact(own) => {
+                    if let Some(direction) = own.surface.direction() {
+                        let n = turned.normal(own.body_b);
+                        examiner.zero(n.dot(direction), largest(direction), what);
+                    }
+                }
                 // Flexible bodies that carry it have no plane but by chance, which is not looked for.
                 LoadKind::Distributed(_) => examiner.zero(S::one(), 1.0, what),
                 LoadKind::Spring { .. }
+                | LoadKind::Drag { .. }
                 | LoadKind::BallDamping { .. }
                 | LoadKind::Damping {
                     dof: DegreeOfFreedom::Translation,
@@ -315,7 +327,12 @@ impl Plane {
                 | LoadKind::Friction {
                     dof: DegreeOfFreedom::Translation,
                     ..
-                } => {}
+                }
+                | LoadKind::JointStop {
+                    dof: DegreeOfFreedom::Translation,
+                    ..
+                }
+                | LoadKind::DistanceStop { .. } => {}
             }
         }
     }

@@ -237,16 +237,34 @@ fn move_load<S: Scalar>(kind: &mut LoadKind<S>, on_host: &[Option<Pose<S>>]) {
             point_a,
             point_b,
             ..
+        }
+        | LoadKind::DistanceStop {
+            body_a,
+            body_b,
+            point_a,
+            point_b,
+            ..
         } => {
             moved(body_a, point_a);
             if let Some(body) = body_b {
                 moved(body, point_b);
             }
         }
+        LoadKind::Drag { body, point, .. } => moved(body, point),
+        LoadKind::Contact(own) => {
+            moved(&mut own.body_a, &mut own.point_a);
+            if let Some(body) = &mut own.body_b {
+                if let Some(pose) = &on_host[*body] {
+                    own.surface.turn(|direction| pose.turn * direction);
+                }
+                moved(body, &mut own.point_b);
+            }
+        }
         LoadKind::TorsionSpring { .. }
         | LoadKind::Damping { .. }
         | LoadKind::BallDamping { .. }
-        | LoadKind::Friction { .. } => {}
+        | LoadKind::Friction { .. }
+        | LoadKind::JointStop { .. } => {}
         // It acts on a flexible body, and these are not merged.
         LoadKind::Distributed(_) => {}
     }

@@ -116,6 +116,13 @@ fn vectors(model: &Model<f64>) -> (Vec<Vec3<f64>>, Vec<Vec3<f64>>) {
                 point_a,
                 point_b,
                 ..
+            }
+            | LoadKind::DistanceStop {
+                body_a,
+                body_b,
+                point_a,
+                point_b,
+                ..
             } => {
                 let at = |body: usize, point: &Vec3<f64>| {
                     model.bodies[body].position + turn(body) * point
@@ -123,6 +130,14 @@ fn vectors(model: &Model<f64>) -> (Vec<Vec3<f64>>, Vec<Vec3<f64>>) {
                 let b = body_b.map_or(*point_b, |body| at(body, point_b));
                 inside.push(at(*body_a, point_a) - b);
                 inside.push(turn(*body_a) * point_a);
+            }
+            LoadKind::Drag { body, point, .. } => inside.push(turn(*body) * point),
+            LoadKind::Contact(own) => {
+                let (of_a, of_b) = (turn(own.body_a), own.body_b.map(turn));
+                inside.push(of_a * own.point_a);
+                if let Some(direction) = own.surface.direction() {
+                    inside.push(of_b.map_or(*direction, |turn| turn * direction));
+                }
             }
             LoadKind::Force {
                 body,
@@ -140,6 +155,7 @@ fn vectors(model: &Model<f64>) -> (Vec<Vec3<f64>>, Vec<Vec3<f64>>) {
             | LoadKind::Damping { .. }
             | LoadKind::BallDamping { .. }
             | LoadKind::Friction { .. }
+            | LoadKind::JointStop { .. }
             | LoadKind::Distributed(_) => {}
         }
     }

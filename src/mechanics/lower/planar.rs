@@ -314,19 +314,33 @@ fn turn_to(joint: &Joint<f64>, normal: &Vec3<f64>) -> Option<Mat3<f64>> {
 /// Points of a load, each with its body.
 pub(super) fn points<S: Scalar>(kind: &LoadKind<S>) -> [Option<(Option<usize>, Vec3<S>)>; 2] {
     match kind {
-        LoadKind::Force { body, point, .. } => [Some((Some(*body), *point)), None],
+        LoadKind::Force { body, point, .. } | LoadKind::Drag { body, point, .. } => {
+            [Some((Some(*body), *point)), None]
+        }
         LoadKind::Spring {
             body_a,
             body_b,
             point_a,
             point_b,
             ..
+        }
+        | LoadKind::DistanceStop {
+            body_a,
+            body_b,
+            point_a,
+            point_b,
+            ..
         } => [Some((Some(*body_a), *point_a)), Some((*body_b, *point_b))],
+        LoadKind::Contact(own) => [
+            Some((Some(own.body_a), own.point_a)),
+            Some((own.body_b, own.point_b)),
+        ],
         LoadKind::Torque { .. }
         | LoadKind::TorsionSpring { .. }
         | LoadKind::Damping { .. }
         | LoadKind::BallDamping { .. }
         | LoadKind::Friction { .. }
+        | LoadKind::JointStop { .. }
         | LoadKind::Distributed(_) => [None, None],
     }
 }

@@ -73,8 +73,16 @@ pub(super) fn holds<S: Scalar>(
                 Axes::Ground => vanishes(Some(point), &turns),
                 Axes::Body => vanishes(None, &turns),
             },
+            LoadKind::Drag { body, point, .. } if is(*body) => vanishes(Some(point), &turns),
             LoadKind::Torque { body, .. } if is(*body) => vanishes(None, &turns),
             LoadKind::Spring {
+                body_a,
+                body_b,
+                point_a,
+                point_b,
+                ..
+            }
+            | LoadKind::DistanceStop {
                 body_a,
                 body_b,
                 point_a,
@@ -88,17 +96,31 @@ pub(super) fn holds<S: Scalar>(
                     vanishes(Some(point_b), &turns);
                 }
             }
+            LoadKind::Contact(own) => {
+                // Friction turns a sphere; a point only if it is off the centre of mass.
+                let slides = own.friction.is_zero() || own.radius.is_zero();
+                if is(own.body_a) {
+                    vanishes(slides.then_some(&own.point_a), &turns);
+                }
+                if own.body_b.is_some_and(is) {
+                    vanishes(None, &turns);
+                }
+            }
             LoadKind::TorsionSpring { joint, .. }
             | LoadKind::Damping { joint, .. }
             | LoadKind::BallDamping { joint, .. }
-            | LoadKind::Friction { joint, .. } => {
+            | LoadKind::Friction { joint, .. }
+            | LoadKind::JointStop { joint, .. } => {
                 let joint = &model.joints[*joint];
                 if is(joint.body_a) || joint.body_b.is_some_and(is) {
                     vanishes(None, &turns);
                 }
             }
             // No flexible body is a point.
-            LoadKind::Force { .. } | LoadKind::Torque { .. } | LoadKind::Distributed(_) => {}
+            LoadKind::Force { .. }
+            | LoadKind::Torque { .. }
+            | LoadKind::Drag { .. }
+            | LoadKind::Distributed(_) => {}
         }
     }
     let read = || "a function observes its rotation".to_owned();
@@ -140,7 +162,7 @@ fn looks_at<S: Scalar>(scene: &Scene<S>, function: &Function<S>) -> Vec<(usize, 
         | Instant::LargestDeformation { .. } => Vec::new(),
         // Loads turn only bodies that are no points. Angular velocities are zero, but the angular
         // momentum of a centre is not, whatever its body's rotation.
-        Instant::AngularMomentum(_) | Instant::Spring(_) | Instant::Power(_) => Vec::new(),
+        Instant::AngularMomentum(_) | Instant::Load(_) | Instant::Power(_) => Vec::new(),
         Instant::Reaction(wrench) => {
             let all = reactions::turning(scene, wrench).into_iter();
             all.map(|body| (body, None)).collect()

@@ -38,12 +38,7 @@ impl Seen {
             }
         }
         for load in &model.loads {
-            if let LoadKind::TorsionSpring {
-                joint,
-                counter: Some(counter),
-                ..
-            } = load.kind
-            {
+            if let (Some(joint), Some(counter)) = (load.kind.joint(), load.kind.counter()) {
                 parts.join(model.joints[joint].body_a, counter);
             }
         }
@@ -171,13 +166,19 @@ impl Seen {
 /// The bodies that a load acts on.
 fn ends<S>(load: &Load<S>, model: &Model<S>) -> [Option<usize>; 2] {
     match load.kind {
-        LoadKind::Force { body, .. } | LoadKind::Torque { body, .. } => [Some(body), None],
+        LoadKind::Force { body, .. }
+        | LoadKind::Torque { body, .. }
+        | LoadKind::Drag { body, .. } => [Some(body), None],
         LoadKind::Distributed(ref load) => [Some(load.body), None],
-        LoadKind::Spring { body_a, body_b, .. } => [Some(body_a), body_b],
+        LoadKind::Spring { body_a, body_b, .. } | LoadKind::DistanceStop { body_a, body_b, .. } => {
+            [Some(body_a), body_b]
+        }
+        LoadKind::Contact(ref own) => [Some(own.body_a), own.body_b],
         LoadKind::TorsionSpring { joint, .. }
         | LoadKind::Damping { joint, .. }
         | LoadKind::BallDamping { joint, .. }
-        | LoadKind::Friction { joint, .. } => {
+        | LoadKind::Friction { joint, .. }
+        | LoadKind::JointStop { joint, .. } => {
             let joint = &model.joints[joint];
             [Some(joint.body_a), joint.body_b]
         }
@@ -206,13 +207,21 @@ fn leave_out<S: Scalar>(model: &mut Model<S>, number: &[Option<usize>]) -> [Vec<
     model.loads.retain(|_| stays.next() == Some(&true));
     for load in &mut model.loads {
         match &mut load.kind {
-            LoadKind::Force { body, .. } | LoadKind::Torque { body, .. } => new(body),
+            LoadKind::Force { body, .. }
+            | LoadKind::Torque { body, .. }
+            | LoadKind::Drag { body, .. } => new(body),
             LoadKind::Distributed(load) => new(&mut load.body),
-            LoadKind::Spring { body_a, body_b, .. } => {
+            LoadKind::Spring { body_a, body_b, .. }
+            | LoadKind::DistanceStop { body_a, body_b, .. } => {
                 new(body_a);
                 body_b.iter_mut().for_each(new);
             }
-            LoadKind::TorsionSpring { joint, counter, .. } => {
+            LoadKind::Contact(own) => {
+                new(&mut own.body_a);
+                own.body_b.iter_mut().for_each(new);
+            }
+            LoadKind::TorsionSpring { joint, counter, .. }
+            | LoadKind::JointStop { joint, counter, .. } => {
                 new_joint(joint);
                 counter.iter_mut().for_each(new);
             }

@@ -136,9 +136,21 @@ impl Welded {
                 }
             }
             for load in &model.loads {
-                if let LoadKind::Spring { body_a, body_b, .. } = load.kind
-                    && links([Some(body_a), body_b])
-                {
+                let pair = match &load.kind {
+                    LoadKind::Spring { body_a, body_b, .. }
+                    | LoadKind::DistanceStop { body_a, body_b, .. } => [Some(*body_a), *body_b],
+                    LoadKind::Contact(own) => [Some(own.body_a), own.body_b],
+                    LoadKind::Force { .. }
+                    | LoadKind::Torque { .. }
+                    | LoadKind::TorsionSpring { .. }
+                    | LoadKind::Damping { .. }
+                    | LoadKind::BallDamping { .. }
+                    | LoadKind::Friction { .. }
+                    | LoadKind::Drag { .. }
+                    | LoadKind::JointStop { .. }
+                    | LoadKind::Distributed(_) => continue,
+                };
+                if links(pair) {
                     let name = &load.name;
                     obstacles.push(ViolatedCondition::plain(format!(
                         "load \"{name}\" joins them too"
@@ -208,17 +220,8 @@ impl Welded {
 /// Loads that act through a joint, and functions that observe its reaction. They prevent its removal.
 fn loads_on(scene: &Scene<f64>, joint: usize) -> Vec<ViolatedCondition> {
     let model = &scene.model;
-    let acts = |kind: &LoadKind<f64>| match kind {
-        LoadKind::TorsionSpring { joint: own, .. }
-        | LoadKind::Damping { joint: own, .. }
-        | LoadKind::BallDamping { joint: own, .. }
-        | LoadKind::Friction { joint: own, .. } => *own == joint,
-        LoadKind::Force { .. }
-        | LoadKind::Torque { .. }
-        | LoadKind::Spring { .. }
-        | LoadKind::Distributed(_) => false,
-    };
-    let loads = model.loads.iter().filter(|load| acts(&load.kind));
+    let loads = model.loads.iter();
+    let loads = loads.filter(|load| load.kind.joint() == Some(joint));
     let told =
         loads.map(|load| ViolatedCondition::plain(format!("load \"{}\" acts on it", load.name)));
     let mut all: Vec<ViolatedCondition> = told.collect();

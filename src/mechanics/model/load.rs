@@ -1,4 +1,4 @@
-//! Loads: forces and torques on bodies, springs, dampers and friction.
+//! Loads: forces and torques on bodies, springs, dampers, friction, drag, stops and contacts.
 //!
 //! Let m(t) be a [`TimeFunction`], d = P_A − P_B the vector between two points, l = √(dᵀd), e the
 //! axis of a joint, φ the angle of its body A relative to body B about e, s = e · d its
@@ -12,14 +12,19 @@
 //! damping            M = −c φ̇ e   or   F = −c ṡ e
 //! ball damping       M = −c (ω_A − ω_B)
 //! friction           M = −μ tanh(φ̇ / w) e   or   F = −μ tanh(ṡ / w) e
+//! drag               F = −c |u|² u / √(|u|² + w²),           u = ṙ of a point
+//! joint stop         M = (N(φ_l − φ, −φ̇) − N(φ − φ_u, φ̇)) e   or   F likewise with s
+//! distance stop      F = (N(l_l − l, −l̇) − N(l − l_u, l̇)) d / l
 //! ```
 //!
-//! and by the opposite on body B, so momentum is conserved. Loads that are spread over the elements of a flexible body
-//! have a file of their own ([`super::distributed`]). Forces and their derivatives are in `system::loads`.
+//! and by the opposite on body B, so momentum is conserved. N(δ, δ̇) is the [`NormalLaw`] of a stop at a lower (l) or upper (u) limit. Contacts, and loads that are spread over the elements of a flexible body,
+//! have files of their own ([`super::contact`], [`super::distributed`]). Forces and their derivatives are in `system::loads`.
 
 use super::axes::Axes;
+use super::contact::Contact;
 use super::distributed::DistributedLoad;
 use super::drive::DegreeOfFreedom;
+use super::normal_law::NormalLaw;
 use super::time_function::TimeFunction;
 use crate::math::{Scalar, Vec3, parameters};
 
@@ -121,6 +126,47 @@ pub enum LoadKind<S> {
         /// Rate w, at which tanh 1 of μ acts \[rad/s or m/s\].
         width: S,
     },
+    /// Quadratic drag on a point of a body in a fluid at rest, smooth where it is at rest.
+    Drag {
+        /// The body.
+        body: usize,
+        /// The point, from the centre of mass in body axes \[m\].
+        point: Vec3<S>,
+        /// c = ½ ρ c_d A \[N s²/m²\].
+        coefficient: S,
+        /// Speed w, well above which the drag is quadratic \[m/s\].
+        width: S,
+    },
+    /// Stops at the ends of the way of a joint, along or about its axis.
+    JointStop {
+        /// The joint.
+        joint: usize,
+        /// The degree of freedom that is stopped.
+        dof: DegreeOfFreedom,
+        /// The body whose first coordinate has the turns of a rotation, as of a torsion spring.
+        counter: Option<usize>,
+        /// Lower and upper limit \[rad or m\].
+        limits: [Option<S>; 2],
+        /// The normal law of both.
+        law: NormalLaw<S>,
+    },
+    /// Stops of the distance of points of two bodies. The points must stay apart.
+    DistanceStop {
+        /// Body A.
+        body_a: usize,
+        /// Body B; `None` is ground.
+        body_b: Option<usize>,
+        /// Point of A, from the centre of mass in body axes \[m\].
+        point_a: Vec3<S>,
+        /// Point of B, from the centre of mass in body axes (on ground: from the origin) \[m\].
+        point_b: Vec3<S>,
+        /// Lower and upper limit \[m\].
+        limits: [Option<S>; 2],
+        /// The normal law of both.
+        law: NormalLaw<S>,
+    },
+    /// A contact of a sphere or point with a surface.
+    Contact(Contact<S>),
     /// A pressure or a dead load on the elements of a flexible body.
     Distributed(DistributedLoad<S>),
 }
@@ -135,6 +181,10 @@ parameters!(enum LoadKind {
     Damping { joint, dof; coefficient },
     BallDamping { joint; coefficient },
     Friction { joint, dof; size, width },
+    Drag { body; point, coefficient, width },
+    JointStop { joint, dof, counter; limits, law },
+    DistanceStop { body_a, body_b; point_a, point_b, limits, law },
+    Contact(; contact),
     Distributed(; load),
 });
 
@@ -150,7 +200,50 @@ impl<S: Scalar> LoadKind<S> {
             | LoadKind::TorsionSpring { .. }
             | LoadKind::Damping { .. }
             | LoadKind::BallDamping { .. }
-            | LoadKind::Friction { .. } => None,
+            | LoadKind::Friction { .. }
+            | LoadKind::Drag { .. }
+            | LoadKind::JointStop { .. }
+            | LoadKind::DistanceStop { .. }
+            | LoadKind::Contact(_) => None,
+        }
+    }
+}
+
+impl<S> LoadKind<S> {
+    /// The joint through which the load acts, if it does.
+    pub fn joint(&self) -> Option<usize> {
+        match self {
+            LoadKind::TorsionSpring { joint, .. }
+            | LoadKind::Damping { joint, .. }
+            | LoadKind::BallDamping { joint, .. }
+            | LoadKind::Friction { joint, .. }
+            | LoadKind::JointStop { joint, .. } => Some(*joint),
+            LoadKind::Force { .. }
+            | LoadKind::Torque { .. }
+            | LoadKind::Spring { .. }
+            | LoadKind::Drag { .. }
+            | LoadKind::DistanceStop { .. }
+            | LoadKind::Contact(_)
+            | LoadKind::Distributed(_) => None,
+        }
+    }
+
+    /// The body that counts the turns of its joint, if one does.
+    pub fn counter(&self) -> Option<usize> {
+        match self {
+            LoadKind::TorsionSpring { counter, .. } | LoadKind::JointStop { counter, .. } => {
+                *counter
+            }
+            LoadKind::Force { .. }
+            | LoadKind::Torque { .. }
+            | LoadKind::Spring { .. }
+            | LoadKind::Damping { .. }
+            | LoadKind::BallDamping { .. }
+            | LoadKind::Friction { .. }
+            | LoadKind::Drag { .. }
+            | LoadKind::DistanceStop { .. }
+            | LoadKind::Contact(_)
+            | LoadKind::Distributed(_) => None,
         }
     }
 }

@@ -5,6 +5,7 @@
 //! each parameter.
 
 pub mod axes;
+pub mod contact;
 pub mod distributed;
 pub mod drive;
 pub mod element_operators;
@@ -13,6 +14,7 @@ pub mod flexible;
 pub mod joint;
 pub mod load;
 pub mod mobility;
+pub mod normal_law;
 pub mod reduced;
 pub mod rigid_body;
 pub mod shapes;
@@ -21,12 +23,14 @@ pub mod table;
 pub mod time_function;
 
 pub use axes::Axes;
+pub use contact::{Contact, Surface};
 pub use distributed::{DistributedLoad, Spread};
 pub use drive::{DegreeOfFreedom, Drive};
 pub use flexible::{FlexibleBody, Form, Inertia, Modes};
 pub use joint::{ConstraintRow, Fit, Joint, JointFrame, JointKind};
 pub use load::{Load, LoadKind};
 pub use mobility::Mobility;
+pub use normal_law::NormalLaw;
 pub use rigid_body::RigidBody;
 pub use table::{Interpolation, Smoothness};
 pub use time_function::TimeFunction;
@@ -38,7 +42,7 @@ use crate::math::{Scalar, Vec3, parameters, rotation};
 pub struct Model<S> {
     /// Gravitational acceleration in ground axes \[m/s²\].
     pub gravity: Vec3<S>,
-    /// Bodies in the order of the problem file, then those without mass that flexible bodies and torsion springs need.
+    /// Bodies in the order of the problem file, then those without mass that flexible bodies, torsion springs and stops need.
     pub bodies: Vec<RigidBody<S>>,
     /// Joints in the order of the problem file, then the attachments of flexible bodies.
     pub joints: Vec<Joint<S>>,
@@ -69,10 +73,14 @@ impl<S: Scalar> Model<S> {
             LoadKind::Spring { damping, .. } | LoadKind::TorsionSpring { damping, .. } => {
                 damping.re() == 0.0
             }
-            LoadKind::Damping { coefficient, .. } | LoadKind::BallDamping { coefficient, .. } => {
-                coefficient.re() == 0.0
-            }
+            LoadKind::Damping { coefficient, .. }
+            | LoadKind::BallDamping { coefficient, .. }
+            | LoadKind::Drag { coefficient, .. } => coefficient.re() == 0.0,
             LoadKind::Friction { size, .. } => size.re() == 0.0,
+            LoadKind::JointStop { law, .. } | LoadKind::DistanceStop { law, .. } => {
+                law.dissipation.re() == 0.0
+            }
+            LoadKind::Contact(own) => own.law.dissipation.re() == 0.0 && own.friction.re() == 0.0,
             // They are judged as what feeds the motion.
             LoadKind::Force { .. } | LoadKind::Torque { .. } | LoadKind::Distributed(_) => true,
         };
@@ -102,17 +110,18 @@ impl<S: Scalar> Model<S> {
         all.any(|flexible| flexible.carriers().contains(&body)) || self.is_counter(body)
     }
 
-    /// Whether a body counts the turns of a torsion spring.
+    /// Whether a body counts the turns of a torsion spring or a stop.
     pub fn is_counter(&self, body: usize) -> bool {
-        let counts = |load: &Load<S>| matches!(load.kind, LoadKind::TorsionSpring { counter, .. } if counter == Some(body));
+        let counts = |load: &Load<S>| load.kind.counter() == Some(body);
         self.loads.iter().any(counts)
     }
 
-    /// Gives a torsion spring a body that counts the turns of its joint, whose angle starts so.
+    /// Gives a torsion spring or a stop a body that counts the turns of its joint, whose angle starts so.
     pub fn count_turns(&mut self, load: usize, angle: f64) {
         let body = self.bodies.len();
         let Load { name, kind } = &mut self.loads[load];
-        if let LoadKind::TorsionSpring { counter, .. } = kind {
+        if let LoadKind::TorsionSpring { counter, .. } | LoadKind::JointStop { counter, .. } = kind
+        {
             *counter = Some(body);
             let mut own = RigidBody::massless(format!("{name}, turns"));
             own.mobility = Mobility::fixed();

@@ -1,7 +1,7 @@
-//! Whole turns of joints with torsion springs.
+//! Whole turns of joints with torsion springs or stops.
 //!
-//! The state gives the angle of a joint up to whole turns, and a spring needs all of it. A body without mass and unknowns, the
-//! counter of the spring, has the angle φ_k of the last step as the first component of its position. With the Euler parameters
+//! The state gives the angle of a joint up to whole turns, and a spring or a stop needs all of it. A body without mass and unknowns, the
+//! counter of the load, has the angle φ_k of the last step as the first component of its position. With the Euler parameters
 //! of both bodies (0 as placed), * the conjugate and n the axis in body B, the angle is
 //!
 //! ```text
@@ -14,7 +14,7 @@
 use super::numbering::Numbering;
 use crate::math::rotation::{Quat, compose, conjugate, twist};
 use crate::math::{Scalar, Vec3};
-use crate::model::{LoadKind, Model};
+use crate::model::Model;
 use std::f64::consts::TAU;
 
 /// The counted angle \[rad\] of a joint whose bodies A and B have these Euler parameters, nearest to `known`; `counter` is the
@@ -42,12 +42,7 @@ pub(super) fn counted<S: Scalar>(
 pub fn count<S: Scalar>(model: &Model<S>, numbering: &Numbering, q: &mut [S]) {
     let ground = [S::one(), S::zero(), S::zero(), S::zero()];
     for load in &model.loads {
-        let LoadKind::TorsionSpring {
-            joint,
-            counter: Some(counter),
-            ..
-        } = load.kind
-        else {
+        let (Some(joint), Some(counter)) = (load.kind.joint(), load.kind.counter()) else {
             continue;
         };
         let of = |body: usize| {

@@ -8,7 +8,7 @@ use crate::placement::GROUND;
 use crate::pointer::{advice, join};
 use crate::quantity::Quantity;
 use crate::schema::joints::Ends;
-use crate::schema::loads::{Load, Motion, TimeFunction};
+use crate::schema::loads::{Contact, Load, Motion, Stop, Surface, TimeFunction};
 use crate::schema::measured::JointReaction;
 
 impl Checker<'_> {
@@ -97,6 +97,9 @@ impl Checker<'_> {
                 self.loaded_joint(pointer, &friction.joint, &kinds);
                 self.joint_motion(pointer, &friction.joint, friction.motion);
             }
+            Load::Drag(drag) => self.moving(pointer, &drag.body, &drag.point),
+            Load::Stop(stop) => self.stop(pointer, stop),
+            Load::Contact(contact) => self.contact(pointer, contact),
             Load::Pressure(load) => {
                 self.loaded_elements(pointer, &load.body, ("faces", &load.faces));
                 self.course(&join(pointer, "pressure"), load.pressure.parts());
@@ -185,6 +188,9 @@ impl Checker<'_> {
             | Load::Torque(_)
             | Load::Damping(_)
             | Load::Friction(_)
+            | Load::Drag(_)
+            | Load::Stop(_)
+            | Load::Contact(_)
             | Load::Pressure(_)
             | Load::Area(_)
             | Load::Edge(_)
@@ -203,6 +209,110 @@ impl Checker<'_> {
         };
         let place = join(pointer, "load");
         let expected = format!("the name of a load that is a {what}");
+        self.fault(Finding::new(place, format!("\"{name}\""), expected).hint(hint));
+    }
+
+    /// Checks a stop: what it stops, and its limits.
+    fn stop(&mut self, pointer: &str, stop: &Stop) {
+        use JointKind::{Cylindrical, Planar, Prismatic, Revolute};
+        match (&stop.joint, &stop.between, &stop.at) {
+            (Some(joint), None, None) => {
+                let kinds = [Revolute, Prismatic, Cylindrical, Planar];
+                self.loaded_joint(pointer, joint, &kinds);
+                self.joint_motion(pointer, joint, stop.motion);
+            }
+            (None, Some(between), Some(at)) => {
+                self.between(&join(pointer, "between"), between);
+                if let Ends::Each(pair) = at {
+                    self.pair(&join(pointer, "at"), between, pair);
+                }
+                if stop.motion.is_some() {
+                    let expected = "none, as it stops a distance";
+                    let finding = Finding::new(join(pointer, "motion"), "a motion", expected);
+                    self.fault(finding.of_key());
+                }
+            }
+            (joint, between, at) => {
+                let keys = [
+                    (joint.is_some(), "\"joint\""),
+                    (between.is_some(), "\"between\""),
+                    (at.is_some(), "\"at\""),
+                ];
+                let given: Vec<&str> = keys.iter().filter(|key| key.0).map(|key| key.1).collect();
+                let found = match given.is_empty() {
+                    true => "nothing that is stopped".to_owned(),
+                    false => given.join(" and "),
+                };
+                let expected = "\"joint\", or \"between\" and \"at\"";
+                self.fault(Finding::new(pointer, found, expected).of_key());
+            }
+        }
+        match (&stop.lower, &stop.upper) {
+            (None, None) => {
+                let expected = "\"lower\", \"upper\" or both";
+                self.fault(Finding::new(pointer, "a stop without a limit", expected).of_key());
+            }
+            (Some(lower), Some(upper)) if lower.value >= upper.value => {
+                let found = format!("{} above {}", lower.value, upper.value);
+                let expected = "a lower limit below the upper one";
+                self.fault(Finding::new(join(pointer, "lower"), found, expected));
+            }
+            (Some(_), Some(_)) | (Some(_), None) | (None, Some(_)) => {}
+        }
+    }
+
+    /// Checks a contact: its bodies and its surface.
+    fn contact(&mut self, pointer: &str, contact: &Contact) {
+        let list = join(pointer, "between");
+        self.between(&list, &contact.between);
+        if contact.between[0] == GROUND && contact.between[1] != GROUND {
+            let expected =
+                "the body with the sphere or point; ground comes second, with the surface";
+            self.fault(Finding::new(join(&list, 0), "\"ground\"", expected));
+        }
+        if let Ends::Each(pair) = &contact.at {
+            self.pair(&join(pointer, "at"), &contact.between, pair);
+        }
+        let place = join(pointer, "surface");
+        match &contact.surface {
+            Surface::Plane { normal } => {
+                self.direction(&join(&join(&place, "plane"), "normal"), normal);
+            }
+            Surface::Sphere { radius } => {
+                if radius.value == 0.0 && contact.radius.value == 0.0 {
+                    let expected = "a radius of one of them, as two points do not meet";
+                    let radius = join(&join(&place, "sphere"), "radius");
+                    self.fault(Finding::new(radius, "a point against a point", expected));
+                }
+            }
+            Surface::Capsule { half, .. } => {
+                self.direction(&join(&join(&place, "capsule"), "half"), half);
+            }
+        }
+    }
+
+    /// Checks that a load is a stop or a contact.
+    pub(super) fn stop_of(&mut self, pointer: &str, name: &str, friction: bool) {
+        let loads = &self.document.loads;
+        let fits = |load: &Load| match load {
+            Load::Stop(_) => !friction,
+            Load::Contact(_) => true,
+            _ => false,
+        };
+        if loads.get(name).is_some_and(fits) || self.damage.holds("loads", name) {
+            return;
+        }
+        let suitable = loads.iter().filter(|(_, load)| fits(load));
+        let names: Vec<&str> = suitable.map(|(name, _)| name.as_str()).collect();
+        let hint = match names.is_empty() {
+            true => Some("there is none".to_owned()),
+            false => advice(name, "such loads", names),
+        };
+        let expected = match friction {
+            true => "the name of a load that is a contact",
+            false => "the name of a load that is a stop or contact",
+        };
+        let place = join(pointer, "load");
         self.fault(Finding::new(place, format!("\"{name}\""), expected).hint(hint));
     }
 

@@ -266,6 +266,15 @@ impl Checker<'_> {
             Instant::SpringTorque(of) => {
                 self.spring(&join(pointer, "spring_torque"), &of.load, true);
             }
+            Instant::ContactForce(of) => {
+                self.stop_of(&join(pointer, "contact_force"), &of.load, false);
+            }
+            Instant::ContactFriction(of) => {
+                self.stop_of(&join(pointer, "contact_friction"), &of.load, true);
+            }
+            Instant::Penetration(of) => {
+                self.stop_of(&join(pointer, "penetration"), &of.load, false);
+            }
             Instant::Rotation(rotation) => {
                 let pointer = join(pointer, "rotation");
                 self.moving(&pointer, &rotation.body, &None);

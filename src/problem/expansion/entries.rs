@@ -136,6 +136,13 @@ impl Writer<'_> {
                 own => self.moved(used, own, &join(pointer, key), false),
             }
         }
+        for (kind, key) in [("plane", "normal"), ("capsule", "half")] {
+            let surface = entry.get_mut("surface");
+            let surface = surface.and_then(|surface| surface.get_mut(kind));
+            let own = surface.and_then(|surface| surface.get_mut(key));
+            let place = join(&join(&join(pointer, "surface"), kind), key);
+            self.moved(used, own, &place, false);
+        }
         if entry.get("axes").is_none_or(|axes| axes == GROUND) {
             let direction = join(pointer, "direction");
             self.moved(used, entry.get_mut("direction"), &direction, false);

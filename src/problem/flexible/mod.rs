@@ -377,8 +377,17 @@ impl<S: Scalar> FlexibleBodies<S> {
             let mut kind = model.loads[k].kind.clone();
             let load = Holder::Load(k);
             match &mut kind {
-                LoadKind::Force { body, point, .. } => self.move_place(model, load, body, point),
+                LoadKind::Force { body, point, .. } | LoadKind::Drag { body, point, .. } => {
+                    self.move_place(model, load, body, point)
+                }
                 LoadKind::Spring {
+                    body_a,
+                    body_b,
+                    point_a,
+                    point_b,
+                    ..
+                }
+                | LoadKind::DistanceStop {
                     body_a,
                     body_b,
                     point_a,
@@ -388,6 +397,12 @@ impl<S: Scalar> FlexibleBodies<S> {
                     self.move_place(model, load, body_a, point_a);
                     if let Some(body) = body_b {
                         self.move_place(model, load, body, point_b);
+                    }
+                }
+                LoadKind::Contact(own) => {
+                    self.move_place(model, load, &mut own.body_a, &mut own.point_a);
+                    if let Some(body) = &mut own.body_b {
+                        self.move_place(model, load, body, &mut own.point_b);
                     }
                 }
                 LoadKind::Torque { body, .. } => {
@@ -403,6 +418,7 @@ impl<S: Scalar> FlexibleBodies<S> {
                 | LoadKind::Damping { .. }
                 | LoadKind::BallDamping { .. }
                 | LoadKind::Friction { .. }
+                | LoadKind::JointStop { .. }
                 | LoadKind::Distributed(_) => {}
             }
             model.loads[k].kind = kind;

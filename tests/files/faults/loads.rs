@@ -6,6 +6,36 @@ faults! {
     a_load_of_an_unknown_kind:
         r#""joints": {"# =>
         r#""loads": {"load": {"sprng": {}}}, "joints": {"#;
+    a_stop_of_nothing:
+        r#""joints": {"# =>
+        r#""loads": {"load": {"stop": {"upper": 1, "stiffness": 5, "width": 0.1}}}, "joints": {"#;
+    a_stop_of_a_joint_and_a_distance:
+        r#""joints": {"# =>
+        r#""loads": {"load": {"stop": {"joint": "crank", "between": ["rod", "ground"], "upper": 1, "stiffness": 5, "width": 0.1}}}, "joints": {"#;
+    a_stop_without_a_limit:
+        r#""joints": {"# =>
+        r#""loads": {"load": {"stop": {"joint": "crank", "stiffness": 5, "width": 0.1}}}, "joints": {"#;
+    a_stop_with_crossed_limits:
+        r#""joints": {"# =>
+        r#""loads": {"load": {"stop": {"joint": "crank", "lower": 1, "upper": 0.5, "stiffness": 5, "width": 0.1}}}, "joints": {"#;
+    a_stop_of_a_ball:
+        r#""joints": {"# =>
+        r#""loads": {"load": {"stop": {"joint": "pin", "lower": 1, "stiffness": 5, "width": 0.1}}}, "joints": {"#;
+    a_stop_of_no_width:
+        r#""joints": {"# =>
+        r#""loads": {"load": {"stop": {"joint": "crank", "lower": 1, "stiffness": 5, "width": 0}}}, "joints": {"#;
+    a_stop_of_a_root:
+        r#""joints": {"# =>
+        r#""loads": {"load": {"stop": {"joint": "crank", "lower": 1, "stiffness": 5, "width": 0.1, "exponent": 0.5}}}, "joints": {"#;
+    a_contact_of_ground_with_a_body:
+        r#""joints": {"# =>
+        r#""loads": {"load": {"contact": {"between": ["ground", "rod"], "at": {"a": [0, 0, 0], "b": "tip"}, "radius": 0.1, "surface": {"plane": {"normal": [0, 0, 0]}}, "stiffness": 5, "width": 0.1}}}, "joints": {"#;
+    a_contact_of_two_points:
+        r#""joints": {"# =>
+        r#""loads": {"load": {"contact": {"between": ["rod", "con_rod"], "at": {"a": "tip", "b": [0, 0, 0]}, "surface": {"sphere": {"radius": 0}}, "stiffness": 5, "width": 0.1}}}, "joints": {"#;
+    a_contact_with_an_unknown_surface:
+        r#""joints": {"# =>
+        r#""loads": {"load": {"contact": {"between": ["rod", "con_rod"], "at": {"a": "tip", "b": [0, 0, 0]}, "surface": {"cone": {"radius": 0}}, "stiffness": 5, "width": 0.1}}}, "joints": {"#;
     a_force_on_ground:
         r#""joints": {"# =>
         r#""loads": {"load": {"force": {"body": "ground", "direction": [0, 1, 0], "magnitude": 5}}}, "joints": {"#;

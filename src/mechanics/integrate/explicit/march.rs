@@ -15,6 +15,7 @@ use crate::integrate::quadrature::{Intervals, Samples};
 use crate::integrate::scale::Scale;
 use crate::integrate::settings::{Method, Settings, Spacing};
 use crate::integrate::singular::{self, Steadiness};
+use crate::integrate::touches::Touches;
 use crate::integrate::trajectory::{self, Trajectory};
 use crate::integrate::{close, watch};
 use crate::linalg::{SingularMatrix, SolveScalar};
@@ -133,6 +134,8 @@ pub fn march<S: SolveScalar>(
         }
         _ => None,
     };
+    BodyMotion::all(numbering, &from.q, &from.v, &mut motions);
+    let mut touches = Touches::open(model, &motions);
     while let Some(width) = controller.next(run.grid.reached()) {
         let begin = run.grid.reached();
         let h = run.grid.size(duration, width, begin);
@@ -152,6 +155,12 @@ pub fn march<S: SolveScalar>(
                     return Ok(None);
                 }
                 stepper.finish(&mut to, end_time)?;
+                let looked = touches.as_mut();
+                if let Some(missed) =
+                    looked.and_then(|t| t.missed(model, &stepper.field.motions, h.re()))
+                {
+                    return Err(StepFailure::Missed(missed));
+                }
                 if !stepper.field.closes_loops() {
                     return Ok(Some(f64::INFINITY));
                 }
@@ -196,6 +205,7 @@ pub fn march<S: SolveScalar>(
                 continue;
             }
             Err(StepFailure::Close(at)) => controller.give_up_near(at),
+            Err(StepFailure::Missed(missed)) => controller.give_up_over(missed.part),
             Err(failure) => controller.give_up(failure != StepFailure::NotFinite),
         };
         let steady = match tried {
@@ -212,6 +222,9 @@ pub fn march<S: SolveScalar>(
             }
         };
         controller.accept();
+        if let Some(touches) = &mut touches {
+            touches.go_on();
+        }
         if stepper.data.dense {
             run.counts.evaluations += super::tableau::ALL - super::tableau::END - 1;
         }
@@ -428,6 +441,11 @@ pub fn failed<S: SolveScalar>(
         },
         StepFailure::Open => IntegrationFailure::Opened { time, step },
         StepFailure::Inaccurate(error) => IntegrationFailure::Unstable { time, step, error },
+        StepFailure::Missed(missed) => IntegrationFailure::MissedContact {
+            load: model.loads[missed.load].name.clone(),
+            time,
+            step,
+        },
         StepFailure::NotFinite => IntegrationFailure::NotFinite {
             time,
             step,

@@ -2,6 +2,7 @@
 
 use super::record::{Node, NodeView, StepData, add_rows};
 use super::tableau::{A, ALL, B, C, E3, E5, END, STAGES};
+use crate::integrate::touches::Missed;
 use crate::integrate::{has_kinks, stage_time};
 use crate::linalg::{SingularMatrix, SolveScalar};
 use crate::math::{Vec3, rotation};
@@ -31,6 +32,8 @@ pub enum StepFailure {
     Open,
     /// The step's estimated error is as large as the motion.
     Inaccurate(f64),
+    /// The step passes over a contact.
+    Missed(Missed),
     /// A value is not finite.
     NotFinite,
 }

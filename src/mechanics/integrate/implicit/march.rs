@@ -14,6 +14,7 @@ use crate::integrate::quadrature::{Due, Samples};
 use crate::integrate::scale::Scale;
 use crate::integrate::settings::{Method, Settings, Spacing};
 use crate::integrate::singular::{MOST_IMPLICIT, Steadiness};
+use crate::integrate::touches::Touches;
 use crate::integrate::trajectory::{self, Trajectory};
 use crate::integrate::{close, watch};
 use crate::linalg::SolveScalar;
@@ -188,6 +189,8 @@ fn march_until<S: SolveScalar>(
         BodyMotion::all(numbering, &past.from.q, &past.from.v, &mut motions);
         ledger.enter(model, &motions, 0.0);
     }
+    BodyMotion::all(numbering, &past.from.q, &past.from.v, &mut motions);
+    let mut touches = Touches::open(model, &motions);
     while let Some(width) = controller.next(run.grid.reached()) {
         if let Some(stretch) = &stretch
             && stretch.is_over(run.counts.implicit_work())
@@ -224,6 +227,22 @@ fn march_until<S: SolveScalar>(
             retry(&mut run, &mut solver, k);
             continue;
         }
+        if let Some(touches) = &mut touches {
+            let last = &solver.stages[count - 1];
+            BodyMotion::all(numbering, &last.q, &last.v, &mut motions);
+            match touches.missed(model, &motions, h.re()) {
+                None => {}
+                Some(missed) if controller.give_up_over(missed.part) => {
+                    let (step, time) = at;
+                    let load = model.loads[missed.load].name.clone();
+                    return Err(IntegrationFailure::MissedContact { load, time, step });
+                }
+                Some(_) => {
+                    retry(&mut run, &mut solver, k);
+                    continue;
+                }
+            }
+        }
         if loops {
             let last = &solver.stages[count - 1];
             field.set_state(&last.q, &last.v, last.time);
@@ -244,6 +263,9 @@ fn march_until<S: SolveScalar>(
             }
         }
         controller.accept();
+        if let Some(touches) = &mut touches {
+            touches.go_on();
+        }
         let stages = &solver.stages[..count];
         let last = &stages[count - 1];
         let due = ledger.as_mut().filter(|_| Ledger::is_due(k));

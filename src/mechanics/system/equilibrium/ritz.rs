@@ -77,7 +77,7 @@ fn one_of_each(
     let mut basis: Vec<[Vec<f64>; 2]> = Vec::new();
     let mut columns: Vec<Vec<f64>> = Vec::new();
     loop {
-        let before = dot(&next, &weighted(&next)).sqrt();
+        let before = dot(&next, &weighted(&next)).max(0.0).sqrt();
         let mut column = vec![0.0; basis.len()];
         // Twice, so that round-off of the first pass goes.
         for _ in 0..2 {
@@ -88,10 +88,12 @@ fn one_of_each(
             }
         }
         let mut metric = weighted(&next);
-        let rest = dot(&next, &metric).sqrt();
-        if !rest.is_finite() {
+        let square = dot(&next, &metric);
+        if !square.is_finite() {
             return None;
         }
+        // That of round-off may be negative.
+        let rest = square.max(0.0).sqrt();
         column.push(rest);
         if !basis.is_empty() {
             columns.push(column);

@@ -2,14 +2,22 @@
 //!
 //! For virtual velocities ψ, ψᵀf is the power of a load, linear in ψ. `power.rs` has the forces and
 //! `pull.rs` the transposed derivative of the power, once for each kind and for any scalar. Forces,
-//! Jacobians and pull-backs all use these two, so they agree. Loads that are spread over the elements of a
+//! Jacobians and pull-backs all use these two, so they agree. Stops have both in `stop.rs`, contacts in
+//! `contact.rs`, and their law is in `normal_law.rs`. Loads that are spread over the elements of a
 //! flexible body act on its coordinates too: `distributed.rs` has all of theirs.
 
+mod contact;
+pub mod course;
 mod distributed;
+mod drag;
+pub mod gaps;
+mod kinds;
+pub mod measured;
+mod normal_law;
 mod parameters;
 mod power;
 mod pull;
-pub mod springs;
+mod stop;
 pub mod work;
 
 use super::bodies::{BodyMotion, add6, velocities_of};
@@ -20,9 +28,9 @@ use super::side::JointSide;
 use super::turns;
 use crate::linalg::Emit;
 use crate::math::{Scalar, Vec3};
-use crate::model::{Axes, DegreeOfFreedom, JointFrame, LoadKind, Model};
+use crate::model::{Axes, DegreeOfFreedom, JointFrame, LoadKind, Model, Surface};
 use parameters::give_to_parameters;
-use pull::{Pulled, pull};
+use pull::Pulled;
 
 /// Both bodies of a load, with its points or frames.
 pub(super) struct Acting<'a, S> {
@@ -60,7 +68,9 @@ fn for_each_load<S: Scalar>(
     };
     for (i, load) in model.loads.iter().enumerate() {
         let acting = match &load.kind {
-            LoadKind::Force { body, point, .. } => acting((*body, at(point)), (None, nowhere)),
+            LoadKind::Force { body, point, .. } | LoadKind::Drag { body, point, .. } => {
+                acting((*body, at(point)), (None, nowhere))
+            }
             LoadKind::Torque { body, .. } => acting((*body, nowhere), (None, nowhere)),
             LoadKind::Spring {
                 body_a,
@@ -68,9 +78,21 @@ fn for_each_load<S: Scalar>(
                 point_a,
                 point_b,
                 ..
+            }
+            | LoadKind::DistanceStop {
+                body_a,
+                body_b,
+                point_a,
+                point_b,
+                ..
             } => acting((*body_a, at(point_a)), (*body_b, at(point_b))),
-            // The angle of a spring is that of the bodies; it does not include drives.
-            LoadKind::TorsionSpring { joint, counter, .. } => {
+            LoadKind::Contact(own) => {
+                let a = (own.body_a, at(&own.point_a));
+                acting(a, (own.body_b, at(&own.point_b)))
+            }
+            // The angle of a spring or a stop is that of the bodies; it does not include drives.
+            LoadKind::TorsionSpring { joint, counter, .. }
+            | LoadKind::JointStop { joint, counter, .. } => {
                 let acting = on_joint(*joint);
                 let ends = [&acting.a.motion.orientation, &acting.b.motion.orientation];
                 let counted = counter.map(|counter| {
@@ -92,7 +114,7 @@ fn for_each_load<S: Scalar>(
 /// reference point, those on elastic coordinates) to `out`, in velocity numbering.
 pub fn add_forces<S: Scalar>(here: &InMotion<S>, out: &mut [S]) {
     for_each_load(here.model, here.motions, |_, kind, at| {
-        let forces = power::forces(kind, at, here.time);
+        let forces = kinds::forces(kind, at, here.time);
         for (body, (force, torque)) in at.bodies.into_iter().zip(forces) {
             let Some(body) = body else { continue };
             add6(&mut out[here.numbering.velocity(body)..], &force, &torque);
@@ -108,7 +130,7 @@ pub fn add_supplying_forces<S: Scalar>(here: &InMotion<S>, out: &mut [S]) {
         if !matches!(kind, LoadKind::Force { .. } | LoadKind::Torque { .. }) {
             return;
         }
-        let forces = power::forces(kind, at, here.time);
+        let forces = kinds::forces(kind, at, here.time);
         for (body, (force, torque)) in at.bodies.into_iter().zip(forces) {
             let Some(body) = body else { continue };
             add6(&mut out[here.numbering.velocity(body)..], &force, &torque);
@@ -146,7 +168,20 @@ fn blocks<S: Scalar>(kind: &LoadKind<S>) -> Blocks {
         },
         LoadKind::Spring { damping, .. } => of(BOTH, BOTH, damped(damping, BOTH)),
         LoadKind::TorsionSpring { damping, .. } => of(ANGULAR, ANGULAR, damped(damping, ANGULAR)),
+        LoadKind::Contact(_) => of(BOTH, BOTH, BOTH),
+        LoadKind::Drag { .. } => of(BOTH, ANGULAR, BOTH),
         LoadKind::BallDamping { .. } => of(ANGULAR, ANGULAR, ANGULAR),
+        LoadKind::JointStop {
+            dof: DegreeOfFreedom::Rotation,
+            law,
+            ..
+        } => of(ANGULAR, ANGULAR, damped(&law.dissipation, ANGULAR)),
+        LoadKind::JointStop {
+            dof: DegreeOfFreedom::Translation,
+            law,
+            ..
+        }
+        | LoadKind::DistanceStop { law, .. } => of(BOTH, BOTH, damped(&law.dissipation, BOTH)),
         LoadKind::Damping { dof, .. } | LoadKind::Friction { dof, .. } => match dof {
             DegreeOfFreedom::Rotation => of(ANGULAR, ANGULAR, ANGULAR),
             DegreeOfFreedom::Translation => of(BOTH, BOTH, BOTH),
@@ -187,7 +222,7 @@ pub fn emit_jacobian<S: Scalar>(here: &InMotion<S>, to: &LoadEntries<S>, emit: &
                 let mut psi = [(Vec3::zeros(), Vec3::zeros()); 2];
                 let (linear, angular) = &mut psi[side];
                 [linear, angular][component / 3][component % 3] = S::one();
-                let pulled = pull(kind, at, here.time, &psi);
+                let pulled = kinds::pulled(kind, at, here.time, &psi);
                 let row = to.row + numbering.velocity(body) + component;
                 for (body, by) in at.bodies.into_iter().zip([&pulled.a, &pulled.b]) {
                     let Some(body) = body else { continue };
@@ -230,7 +265,7 @@ pub fn pull_back(here: &InMotion<f64>, psi: &[f64], out: &mut LoadCotangent) {
                 velocities_of(&psi[numbering.velocity(body)..])
             })
         });
-        let pulled = pull(kind, at, time, &psi);
+        let pulled = kinds::pulled(kind, at, time, &psi);
         give_to_states(&pulled, at, numbering, (&mut out.y, &mut out.v));
         give_to_parameters(kind, &pulled, (i, time), (out.model, out.time));
     });
@@ -255,7 +290,7 @@ fn give_to_states(
     }
 }
 
-/// The first spring of length zero in the placement whose ends may not meet, if any.
+/// The first spring, stop or contact of length zero in the placement whose ends may not meet, if any.
 pub fn without_length(model: &Model<f64>) -> Option<&str> {
     let (q, v) = guess(model);
     let mut motions = Vec::new();
@@ -275,15 +310,23 @@ pub fn without_length(model: &Model<f64>) -> Option<&str> {
         {
             found = found.or(Some(i));
         }
+        let needs_length = match kind {
+            LoadKind::DistanceStop { .. } => true,
+            LoadKind::Contact(own) => !matches!(own.surface, Surface::Plane { .. }),
+            _ => false,
+        };
+        if needs_length && power::apart(at).length == 0.0 {
+            found = found.or(Some(i));
+        }
     });
     found.map(|i| model.loads[i].name.as_str())
 }
 
-/// Potential energy of the springs, Σ ½ k x² + ¼ k3 x⁴ (torsion springs: Σ ½ k x²) \[J\].
+/// Potential energy of the springs, Σ ½ k x² + ¼ k3 x⁴ (torsion springs: Σ ½ k x²), and of stops and contacts \[J\].
 pub fn potential<S: Scalar>(model: &Model<S>, motions: &[BodyMotion<S>]) -> S {
     let mut sum = S::zero();
     for_each_load(model, motions, |_, kind, at| {
-        sum += power::potential(kind, at);
+        sum += kinds::potential(kind, at);
     });
     sum
 }
@@ -298,7 +341,7 @@ pub fn pull_potential(
     cot: &mut Model<f64>,
 ) {
     for_each_load(model, motions, |i, kind, at| {
-        let Some(pulled) = pull::pull_potential(kind, at, weight) else {
+        let Some(pulled) = kinds::pulled_potential(kind, at, weight) else {
             return;
         };
         give_to_states(&pulled, at, numbering, (&mut Some(&mut *y), &mut None));

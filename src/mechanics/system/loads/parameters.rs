@@ -1,6 +1,7 @@
 //! Adds the derivatives of a load's power to the cotangents of its parameters.
 
 use super::pull::Pulled;
+use super::{contact, stop};
 use crate::model::{JointFrame, LoadKind, Model};
 
 /// Adds the derivatives in a load's parameters to the cotangent of the model, and that in time to
@@ -11,7 +12,7 @@ pub(super) fn give_to_parameters(
     (load, now): (usize, f64),
     (model, by_time): (&mut Model<f64>, &mut f64),
 ) {
-    let [s0, s1, s2, s3] = pulled.scalars;
+    let [s0, s1, s2, s3, ..] = pulled.scalars;
     let own = &mut model.loads[load].kind;
     match (kind, own) {
         (
@@ -83,6 +84,38 @@ pub(super) fn give_to_parameters(
             *width += s1;
             give_to_joint(model, *joint, pulled);
         }
+        (LoadKind::JointStop { joint, .. }, LoadKind::JointStop { limits, law, .. }) => {
+            stop::give(&pulled.scalars, limits, law);
+            give_to_joint(model, *joint, pulled);
+        }
+        (
+            LoadKind::DistanceStop { .. },
+            LoadKind::DistanceStop {
+                point_a,
+                point_b,
+                limits,
+                law,
+                ..
+            },
+        ) => {
+            *point_a += pulled.a.frame.point;
+            *point_b += pulled.b.frame.point;
+            stop::give(&pulled.scalars, limits, law);
+        }
+        (
+            LoadKind::Drag { .. },
+            LoadKind::Drag {
+                point,
+                coefficient,
+                width,
+                ..
+            },
+        ) => {
+            *point += pulled.a.frame.point;
+            *coefficient += s0;
+            *width += s1;
+        }
+        (LoadKind::Contact(_), LoadKind::Contact(own)) => contact::give(pulled, own),
         (LoadKind::Distributed(_), LoadKind::Distributed(_)) => {}
         (
             LoadKind::Force { .. }
@@ -92,7 +125,11 @@ pub(super) fn give_to_parameters(
             | LoadKind::TorsionSpring { .. }
             | LoadKind::Damping { .. }
             | LoadKind::BallDamping { .. }
-            | LoadKind::Friction { .. },
+            | LoadKind::Friction { .. }
+            | LoadKind::Drag { .. }
+            | LoadKind::JointStop { .. }
+            | LoadKind::DistanceStop { .. }
+            | LoadKind::Contact(_),
             _,
         ) => unreachable!("a cotangent has the kind of its load"),
     }

@@ -82,7 +82,12 @@ pub(super) fn forces<S: Scalar>(
                 (Vec3::zeros(), rb.tr_mul(&torque)),
             ]
         }
-        LoadKind::Distributed(_) => [none, none],
+        // They have files of their own.
+        LoadKind::JointStop { .. }
+        | LoadKind::DistanceStop { .. }
+        | LoadKind::Drag { .. }
+        | LoadKind::Contact(_)
+        | LoadKind::Distributed(_) => [none, none],
     }
 }
 
@@ -97,7 +102,7 @@ pub(super) fn torsion<S: Scalar>(at: &Acting<S>, [rest, k, c]: [S; 3]) -> S {
     k * angle(at, rest) + c * turn_rate(at)
 }
 
-/// Potential energy of a load \[J\]; zero if it is no spring.
+/// Potential energy of a load \[J\]; zero if it stores none.
 pub(super) fn potential<S: Scalar>(kind: &LoadKind<S>, at: &Acting<S>) -> S {
     match kind {
         LoadKind::Spring {
@@ -120,12 +125,16 @@ pub(super) fn potential<S: Scalar>(kind: &LoadKind<S>, at: &Acting<S>) -> S {
             let x = angle(at, *rest_angle);
             *stiffness * x * x * 0.5
         }
-        LoadKind::Force { .. }
+        LoadKind::JointStop { .. }
+        | LoadKind::DistanceStop { .. }
+        | LoadKind::Contact(_)
+        | LoadKind::Force { .. }
         | LoadKind::Torque { .. }
         | LoadKind::Distributed(_)
         | LoadKind::Damping { .. }
         | LoadKind::BallDamping { .. }
-        | LoadKind::Friction { .. } => S::zero(),
+        | LoadKind::Friction { .. }
+        | LoadKind::Drag { .. } => S::zero(),
     }
 }
 
@@ -193,9 +202,7 @@ pub(super) fn may_meet<S: Scalar>([rest, _, _, c]: [S; 4]) -> bool {
 /// The stretch of a spring of this rest length, k, k3 and c. Where ends meet that may, it has no direction, and the rate
 /// of its length is set to zero.
 pub(super) fn stretch<S: Scalar>(at: &Acting<S>, law: [S; 4]) -> SpringLength<S> {
-    let a = MarkerKinematics::point(at.a.motion, &at.a.frame.point);
-    let b = MarkerKinematics::point(at.b.motion, &at.b.frame.point);
-    let d = a.x - b.x;
+    let d = at.a.point() - at.b.point();
     if may_meet(law) && d.iter().all(|x| x.re() == 0.0) {
         return SpringLength {
             length: S::zero(),
@@ -204,6 +211,14 @@ pub(super) fn stretch<S: Scalar>(at: &Acting<S>, law: [S; 4]) -> SpringLength<S>
             apart: d,
         };
     }
+    apart(at)
+}
+
+/// The distance of the points of a load. The points are apart.
+pub(super) fn apart<S: Scalar>(at: &Acting<S>) -> SpringLength<S> {
+    let a = MarkerKinematics::point(at.a.motion, &at.a.frame.point);
+    let b = MarkerKinematics::point(at.b.motion, &at.b.frame.point);
+    let d = a.x - b.x;
     let length = length(&d);
     let direction = d / length;
     SpringLength {

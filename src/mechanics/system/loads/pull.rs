@@ -3,12 +3,15 @@
 use super::Acting;
 use super::power::{SLIDE, SpringLength, angle, may_meet, stretch, tanh, turn_rate};
 use crate::math::{Scalar, Vec3};
-use crate::model::{Axes, DegreeOfFreedom, LoadKind};
+use crate::model::{Axes, ConstraintRow, DegreeOfFreedom, LoadKind};
 use crate::system::bodies::BodyMotion;
 use crate::system::constraint::{self, SideCotangent};
 use crate::system::marker::{self, MarkerKinematics};
 use crate::system::rows::RowCotangent;
 use crate::system::side::JointSide;
+
+/// Most scalars of a load: a contact has as many.
+pub(super) const SCALARS: usize = 8;
 
 /// Derivatives of the power (or energy) of a load.
 pub(super) struct Pulled<S> {
@@ -16,11 +19,11 @@ pub(super) struct Pulled<S> {
     pub a: SideCotangent<S>,
     /// The same for body B.
     pub b: SideCotangent<S>,
-    /// In the direction of a force or torque.
+    /// In the direction of a force or torque, or that of the surface of a contact.
     pub direction: Vec3<S>,
     /// In the scalars of the load, in the order of its definition. For a force or torque the first
     /// is the magnitude.
-    pub scalars: [S; 4],
+    pub scalars: [S; SCALARS],
 }
 
 impl<S: Scalar> Pulled<S> {
@@ -29,22 +32,40 @@ impl<S: Scalar> Pulled<S> {
             a: SideCotangent::fixed(),
             b: SideCotangent::fixed(),
             direction: Vec3::zeros(),
-            scalars: [S::zero(); 4],
+            scalars: [S::zero(); SCALARS],
         }
+    }
+
+    /// Sets the first scalars.
+    pub(super) fn set_scalars<const N: usize>(&mut self, scalars: [S; N]) {
+        self.scalars[..N].copy_from_slice(&scalars);
     }
 }
 
 /// Virtual velocities (linear in ground axes, angular in body axes) of body A and body B.
-type Virtual<S> = [(Vec3<S>, Vec3<S>); 2];
+pub(super) type Virtual<S> = [(Vec3<S>, Vec3<S>); 2];
 
 /// The load's bodies with the velocities ψ.
-fn moving<S: Scalar>(at: &Acting<S>, psi: &Virtual<S>) -> [BodyMotion<S>; 2] {
+pub(super) fn moving<S: Scalar>(at: &Acting<S>, psi: &Virtual<S>) -> [BodyMotion<S>; 2] {
     let with = |motion: &BodyMotion<S>, (velocity, omega): (Vec3<S>, Vec3<S>)| BodyMotion {
         velocity,
         omega,
         ..*motion
     };
     [with(at.a.motion, psi[0]), with(at.b.motion, psi[1])]
+}
+
+/// The load with other motions of its bodies.
+pub(super) fn with_motions<'a, S: Scalar>(
+    at: &Acting<S>,
+    motions: &'a [BodyMotion<S>; 2],
+) -> Acting<'a, S> {
+    Acting {
+        bodies: at.bodies,
+        a: JointSide::fixed(&motions[0], at.a.frame),
+        b: JointSide::fixed(&motions[1], at.b.frame),
+        counted: at.counted,
+    }
 }
 
 /// Derivatives of ψᵀf.
@@ -56,12 +77,7 @@ pub(super) fn pull<S: Scalar>(
 ) -> Pulled<S> {
     let mut out = Pulled::zero();
     let motions = moving(at, psi);
-    let virtually = Acting {
-        bodies: at.bodies,
-        a: JointSide::fixed(&motions[0], at.a.frame),
-        b: JointSide::fixed(&motions[1], at.b.frame),
-        counted: at.counted,
-    };
+    let virtually = with_motions(at, &motions);
     match kind {
         LoadKind::Force {
             direction,
@@ -129,12 +145,12 @@ pub(super) fn pull<S: Scalar>(
             pull_rate(&virtually, &now, (S::zero(), -tension), &mut out);
             hold_virtual(&mut out);
             pull_rate(at, &now, (by_length, -(*damping * virtual_rate)), &mut out);
-            out.scalars = [
+            out.set_scalars([
                 -by_length,
                 -(x * virtual_rate),
                 -(x * x * x * virtual_rate),
                 -(now.rate * virtual_rate),
-            ];
+            ]);
         }
         LoadKind::TorsionSpring {
             rest_angle,
@@ -189,12 +205,17 @@ pub(super) fn pull<S: Scalar>(
             out.b.theta = (wb.cross(&yb) + pb.cross(&xb)) * c;
             out.b.omega = yb * c;
         }
-        LoadKind::Distributed(_) => {}
+        // They have files of their own.
+        LoadKind::JointStop { .. }
+        | LoadKind::DistanceStop { .. }
+        | LoadKind::Drag { .. }
+        | LoadKind::Contact(_)
+        | LoadKind::Distributed(_) => {}
     }
     out
 }
 
-/// Derivatives of `weight` times a load's potential energy; `None` if it is no spring.
+/// Derivatives of `weight` times a load's potential energy; `None` if it stores none.
 pub(super) fn pull_potential<S: Scalar>(
     kind: &LoadKind<S>,
     at: &Acting<S>,
@@ -228,25 +249,33 @@ pub(super) fn pull_potential<S: Scalar>(
             out.scalars[0] = -(weight * *stiffness * x);
             out.scalars[1] = weight * x * x * 0.5;
         }
-        LoadKind::Force { .. }
+        LoadKind::JointStop { .. }
+        | LoadKind::DistanceStop { .. }
+        | LoadKind::Contact(_)
+        | LoadKind::Force { .. }
         | LoadKind::Torque { .. }
         | LoadKind::Distributed(_)
         | LoadKind::Damping { .. }
         | LoadKind::BallDamping { .. }
-        | LoadKind::Friction { .. } => return None,
+        | LoadKind::Friction { .. }
+        | LoadKind::Drag { .. } => return None,
     }
     Some(out)
 }
 
 /// Clears the derivatives in velocities, because the virtual ones are constant.
-fn hold_virtual<S: Scalar>(out: &mut Pulled<S>) {
+pub(super) fn hold_virtual<S: Scalar>(out: &mut Pulled<S>) {
     for side in [&mut out.a, &mut out.b] {
         (side.velocity, side.omega) = (Vec3::zeros(), Vec3::zeros());
     }
 }
 
 /// Pulls the cotangents of a point's position and velocity back.
-fn pull_point<S: Scalar>(side: &JointSide<S>, [x, rate]: [Vec3<S>; 2], out: &mut SideCotangent<S>) {
+pub(super) fn pull_point<S: Scalar>(
+    side: &JointSide<S>,
+    [x, rate]: [Vec3<S>; 2],
+    out: &mut SideCotangent<S>,
+) {
     let acceleration = Vec3::zeros();
     let cot = MarkerKinematics {
         x,
@@ -293,12 +322,12 @@ fn pull_meeting<S: Scalar>(
     pull_point(&at.a, [by_d, zero], &mut out.a);
     pull_point(&at.b, [-by_d, zero], &mut out.b);
     let along = now.direction.dot(&w);
-    out.scalars = [
+    out.set_scalars([
         (k + k3 * square * 3.0) * along,
         -power,
         -(square * power),
         -(now.rate * along),
-    ];
+    ]);
     out
 }
 
@@ -386,7 +415,17 @@ pub(super) fn pull_slide<S: Scalar>(at: &Acting<S>, rate: S, out: &mut Pulled<S>
         acceleration: S::zero(),
         virtual_rate: S::zero(),
     };
-    let (by_a, by_b) = constraint::pull_back(std::iter::once(SLIDE), |_| cot, &at.a, &at.b);
+    pull_row(at, SLIDE, cot, out);
+}
+
+/// Pulls the cotangents of a row back.
+pub(super) fn pull_row<S: Scalar>(
+    at: &Acting<S>,
+    row: ConstraintRow,
+    cot: RowCotangent<S>,
+    out: &mut Pulled<S>,
+) {
+    let (by_a, by_b) = constraint::pull_back(std::iter::once(row), |_| cot, &at.a, &at.b);
     out.a.add(&by_a);
     out.b.add(&by_b);
 }

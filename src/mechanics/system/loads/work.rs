@@ -1,8 +1,9 @@
 //! Powers of loads and rates of joints for functions, with their derivatives.
 
+use super::kinds::{forces, pulled as pull};
 use super::parameters::{give_to_joint, give_to_parameters};
-use super::power::{SLIDE, forces, turn_rate};
-use super::pull::{Pulled, pull, pull_slide, pull_turn};
+use super::power::{SLIDE, turn_rate};
+use super::pull::{Pulled, pull_slide, pull_turn};
 use super::{Acting, LoadCotangent, distributed, for_each_load, give_to_states};
 use crate::math::{Scalar, Vec3};
 use crate::model::DegreeOfFreedom;

@@ -1,0 +1,443 @@
+//! Forces of contacts and all their derivatives.
+//!
+//! With the centre p of the sphere, x = p − c, c a point of the plane, the centre of the other sphere or the nearest point of
+//! the axis of a capsule, R = R_A + R_B, and the relative velocity v of the bodies at the place of contact z:
+//!
+//! ```text
+//! plane      δ = R_A − n·x,   n given,          z = p − R_A n
+//! others     δ = R − |x|,     n = x / |x|,      z = p − x R_A / R
+//! δ̇ = −n·v,   v_t = v − n (n·v),   t = v_tᵀ u / s,   s = √(v_tᵀ v_t + w²)
+//! ψᵀf = N (n·u − μ t)                            u: the relative velocity of ψ at z
+//! ```
+//!
+//! The normal force has no power along the tangent, so δ̇ follows from v at z whatever the place of z along n. The pull-backs
+//! go from the cotangents of δ, n, v, u and z to the bodies.
+
+use super::course::Course;
+use super::normal_law;
+use super::pull::{Pulled, pull_point};
+use super::{Acting, stop};
+use crate::math::scalar::length;
+use crate::math::{Scalar, Vec3};
+use crate::model::contact::{Contact, Surface};
+use crate::system::bodies::BodyMotion;
+use crate::system::constraint::SideCotangent;
+use crate::system::side::JointSide;
+
+/// Places of the scalars of a contact.
+const RADIUS_A: usize = 0;
+const LAW: usize = 1;
+const FRICTION: usize = 4;
+const SLIP: usize = 5;
+const RADIUS_B: usize = 6;
+
+/// A contact at an instant.
+struct State<S> {
+    /// From c to p.
+    x: Vec3<S>,
+    /// The distance |x|, or n·x above a plane.
+    distance: S,
+    normal: Vec3<S>,
+    penetration: S,
+    /// Place of contact z in ground axes.
+    place: Vec3<S>,
+    /// v.
+    velocity: Vec3<S>,
+    /// Share R_A / R of a curved surface.
+    share: S,
+    /// Where the axis of a capsule is nearest, as a fraction of its half; whether that is between its ends.
+    along: (S, bool),
+}
+
+/// Cotangents of the quantities of a contact.
+struct Cotangent<S> {
+    penetration: S,
+    normal: Vec3<S>,
+    velocity: Vec3<S>,
+    place: Vec3<S>,
+}
+
+/// Tangential velocity, s and their square.
+struct Slip<S> {
+    tangential: Vec3<S>,
+    approach: S,
+    size: S,
+}
+
+/// Velocity of the point of a body that is at a place in ground axes.
+fn velocity_at<S: Scalar>(motion: &BodyMotion<S>, place: &Vec3<S>) -> Vec3<S> {
+    motion.velocity + (motion.rotation * motion.omega).cross(&(place - motion.position))
+}
+
+/// Velocity of A against B at a place.
+fn relative<S: Scalar>(at: &Acting<S>, place: &Vec3<S>) -> Vec3<S> {
+    velocity_at(at.a.motion, place) - velocity_at(at.b.motion, place)
+}
+
+fn state<S: Scalar>(contact: &Contact<S>, at: &Acting<S>) -> State<S> {
+    let (p, o) = (at.a.point(), at.b.point());
+    let y = p - o;
+    let turned = |direction: &Vec3<S>| at.b.motion.rotation * direction;
+    let (zero, one) = (S::zero(), S::one());
+    let (x, radius, along) = match &contact.surface {
+        Surface::Plane { normal } => {
+            let normal = turned(normal);
+            let distance = normal.dot(&y);
+            let place = p - normal * contact.radius;
+            return State {
+                x: y,
+                distance,
+                normal,
+                penetration: contact.radius - distance,
+                place,
+                velocity: relative(at, &place),
+                share: one,
+                along: (zero, false),
+            };
+        }
+        Surface::Sphere { radius } => (y, *radius, (zero, false)),
+        Surface::Capsule { half, radius } => {
+            let a = turned(half);
+            let free = y.dot(&a) / a.dot(&a);
+            let along = match free.re() {
+                s if s >= 1.0 => (one, false),
+                s if s <= -1.0 => (-one, false),
+                _ => (free, true),
+            };
+            (y - a * along.0, *radius, along)
+        }
+    };
+    let distance = length(&x);
+    let sum = contact.radius + radius;
+    let share = contact.radius / sum;
+    let place = p - x * share;
+    State {
+        x,
+        distance,
+        normal: x / distance,
+        penetration: sum - distance,
+        place,
+        velocity: relative(at, &place),
+        share,
+        along,
+    }
+}
+
+fn slip<S: Scalar>(contact: &Contact<S>, now: &State<S>) -> Slip<S> {
+    let approach = now.normal.dot(&now.velocity);
+    let tangential = now.velocity - now.normal * approach;
+    let square = tangential.dot(&tangential) + contact.slip * contact.slip;
+    Slip {
+        tangential,
+        approach,
+        size: square.sqrt(),
+    }
+}
+
+impl<S: Scalar> State<S> {
+    /// N and its derivatives.
+    fn force(&self, contact: &Contact<S>) -> normal_law::NormalForce<S> {
+        let rate = -self.normal.dot(&self.velocity);
+        normal_law::force(&contact.law, self.penetration, rate)
+    }
+}
+
+/// What δ follows from, for the control of steps.
+pub(super) fn course<S: Scalar>(contact: &Contact<S>, at: &Acting<S>) -> Course {
+    let real = |v: Vec3<S>| v.map(Scalar::re);
+    let (radius, half) = match &contact.surface {
+        Surface::Plane { .. } => {
+            let now = state(contact, at);
+            return Course::Depth {
+                value: now.penetration.re(),
+                rate: -now.normal.dot(&now.velocity).re(),
+            };
+        }
+        Surface::Sphere { radius } => (radius.re(), Vec3::zeros()),
+        Surface::Capsule { half, radius } => (radius.re(), real(at.b.motion.rotation * half)),
+    };
+    Course::Distance {
+        point: real(at.a.point() - at.b.point()),
+        rate: real(at.a.point_jet().rate - at.b.point_jet().rate),
+        half,
+        reach: contact.radius.re() + radius,
+        side: 1.0,
+    }
+}
+
+/// δ.
+pub(super) fn penetration<S: Scalar>(contact: &Contact<S>, at: &Acting<S>) -> S {
+    state(contact, at).penetration
+}
+
+/// N.
+pub(super) fn normal<S: Scalar>(contact: &Contact<S>, at: &Acting<S>) -> S {
+    state(contact, at).force(contact).value
+}
+
+/// The size of the friction, μ N |v_t| / s.
+pub(super) fn tangential<S: Scalar>(contact: &Contact<S>, at: &Acting<S>) -> S {
+    let now = state(contact, at);
+    let slip = slip(contact, &now);
+    if slip.tangential.iter().all(|x| x.re() == 0.0) {
+        return S::zero();
+    }
+    contact.friction * now.force(contact).value * length(&slip.tangential) / slip.size
+}
+
+/// The elastic energy.
+pub(super) fn potential<S: Scalar>(contact: &Contact<S>, at: &Acting<S>) -> S {
+    normal_law::potential(&contact.law, state(contact, at).penetration).0
+}
+
+/// Force (ground axes) and torque (body axes) on body A and on body B.
+pub(super) fn forces<S: Scalar>(contact: &Contact<S>, at: &Acting<S>) -> [(Vec3<S>, Vec3<S>); 2] {
+    let now = state(contact, at);
+    let normal = now.force(contact).value;
+    if normal.is_zero() {
+        return [(Vec3::zeros(), Vec3::zeros()); 2];
+    }
+    let slip = slip(contact, &now);
+    let friction = contact.friction * normal / slip.size;
+    let force = now.normal * normal - slip.tangential * friction;
+    let on = |motion: &BodyMotion<S>, force: Vec3<S>| {
+        let moment = (now.place - motion.position).cross(&force);
+        (force, motion.rotation.tr_mul(&moment))
+    };
+    [on(at.a.motion, force), on(at.b.motion, -force)]
+}
+
+/// Adds the derivatives of ψᵀf; `virtually` has the velocities ψ.
+pub(super) fn pull<S: Scalar>(
+    contact: &Contact<S>,
+    at: &Acting<S>,
+    virtually: &Acting<S>,
+    out: &mut Pulled<S>,
+) {
+    let now = state(contact, at);
+    let force = now.force(contact);
+    if force.value.is_zero() {
+        return;
+    }
+    let slip = slip(contact, &now);
+    let u = relative(virtually, &now.place);
+    let (n, v, a) = (now.normal, now.velocity, slip.approach);
+    let b = n.dot(&u);
+    let t = slip.tangential.dot(&u) / slip.size;
+    // P = N (b − μ t).
+    let by_force = b - contact.friction * t;
+    give_force(&force, by_force, out);
+    out.scalars[FRICTION] -= force.value * t;
+    let by_t = -(contact.friction * force.value);
+    let by_product = by_t / slip.size;
+    let by_size = -(by_t * t / slip.size);
+    out.scalars[SLIP] += by_size * contact.slip / slip.size;
+    let by_a = -(by_force * force.by_rate) - by_size * a / slip.size - by_product * b;
+    let by_b = force.value - by_product * a;
+    let by_v = v * (by_size / slip.size) + u * by_product + n * by_a;
+    let by_u = v * by_product + n * by_b;
+    let mut place = pull_velocity(&virtually.a, &now.place, by_u, &mut out.a);
+    place += pull_velocity(&virtually.b, &now.place, -by_u, &mut out.b);
+    super::pull::hold_virtual(out);
+    let cot = Cotangent {
+        penetration: by_force * force.by_penetration,
+        normal: v * by_a + u * by_b + n * (by_size * a * a / slip.size),
+        velocity: by_v,
+        place,
+    };
+    pull_state(contact, at, &now, cot, out);
+}
+
+/// Adds `weight` times the derivatives of N, and of μ N |v_t| / s if `with_friction`.
+pub(super) fn pull_normal<S: Scalar>(
+    contact: &Contact<S>,
+    at: &Acting<S>,
+    weight: S,
+    out: &mut Pulled<S>,
+) {
+    let now = state(contact, at);
+    let force = now.force(contact);
+    give_force(&force, weight, out);
+    let by_a = -(weight * force.by_rate);
+    let cot = Cotangent {
+        penetration: weight * force.by_penetration,
+        normal: now.velocity * by_a,
+        velocity: now.normal * by_a,
+        place: Vec3::zeros(),
+    };
+    pull_state(contact, at, &now, cot, out);
+}
+
+/// Adds `weight` times the derivatives of the size of the friction; zero without slip.
+pub(super) fn pull_tangential<S: Scalar>(
+    contact: &Contact<S>,
+    at: &Acting<S>,
+    weight: S,
+    out: &mut Pulled<S>,
+) {
+    let now = state(contact, at);
+    let slip = slip(contact, &now);
+    if slip.tangential.iter().all(|x| x.re() == 0.0) {
+        return;
+    }
+    let force = now.force(contact);
+    let speed = length(&slip.tangential);
+    let part = speed / slip.size;
+    let by_force = weight * contact.friction * part;
+    give_force(&force, by_force, out);
+    out.scalars[FRICTION] += weight * force.value * part;
+    // |v_t| / s has the slope w² / s³ in |v_t| and −|v_t| w / s³ in w.
+    let cube = slip.size * slip.size * slip.size;
+    let by_part = weight * contact.friction * force.value;
+    out.scalars[SLIP] -= by_part * speed * contact.slip / cube;
+    let by_tangential = slip.tangential * (by_part * contact.slip * contact.slip / (cube * speed));
+    // v_t is across n.
+    let by_a = -(by_force * force.by_rate);
+    let cot = Cotangent {
+        penetration: by_force * force.by_penetration,
+        normal: now.velocity * by_a - by_tangential * slip.approach,
+        velocity: now.normal * by_a + by_tangential,
+        place: Vec3::zeros(),
+    };
+    pull_state(contact, at, &now, cot, out);
+}
+
+/// Adds `weight` times the derivatives of δ.
+pub(super) fn pull_penetration<S: Scalar>(
+    contact: &Contact<S>,
+    at: &Acting<S>,
+    weight: S,
+    out: &mut Pulled<S>,
+) {
+    let now = state(contact, at);
+    let cot = Cotangent {
+        penetration: weight,
+        normal: Vec3::zeros(),
+        velocity: Vec3::zeros(),
+        place: Vec3::zeros(),
+    };
+    pull_state(contact, at, &now, cot, out);
+}
+
+/// Adds `weight` times the derivatives of the elastic energy.
+pub(super) fn pull_potential<S: Scalar>(
+    contact: &Contact<S>,
+    at: &Acting<S>,
+    weight: S,
+    out: &mut Pulled<S>,
+) {
+    let depth = penetration(contact, at);
+    let (_, by_depth, [by_stiffness, by_width]) = normal_law::potential(&contact.law, depth);
+    out.scalars[LAW] += by_stiffness * weight;
+    out.scalars[LAW + 2] += by_width * weight;
+    pull_penetration(contact, at, by_depth * weight, out);
+}
+
+/// Adds the derivatives of `weight` N in the parameters of the law.
+fn give_force<S: Scalar>(force: &normal_law::NormalForce<S>, weight: S, out: &mut Pulled<S>) {
+    for (k, by) in force.by_law.into_iter().enumerate() {
+        out.scalars[LAW + k] += by * weight;
+    }
+}
+
+/// Pulls the cotangent of the velocity of a body at a place back to its motion. Returns that of the place.
+fn pull_velocity<S: Scalar>(
+    side: &JointSide<S>,
+    place: &Vec3<S>,
+    by: Vec3<S>,
+    out: &mut SideCotangent<S>,
+) -> Vec3<S> {
+    let motion = side.motion;
+    let arm = place - motion.position;
+    let by_spin = motion.rotation.tr_mul(&arm.cross(&by));
+    out.velocity += by;
+    out.omega += by_spin;
+    out.theta += motion.omega.cross(&by_spin);
+    let by_arm = by.cross(&(motion.rotation * motion.omega));
+    out.position -= by_arm;
+    by_arm
+}
+
+/// Pulls the cotangent of a direction of body B in ground axes back.
+fn pull_direction<S: Scalar>(
+    side: &JointSide<S>,
+    direction: &Vec3<S>,
+    by: Vec3<S>,
+    out: &mut Pulled<S>,
+) {
+    let local = side.motion.rotation.tr_mul(&by);
+    out.b.theta += direction.cross(&local);
+    out.direction += local;
+}
+
+/// Pulls the cotangents of a contact's quantities back to the bodies and parameters.
+fn pull_state<S: Scalar>(
+    contact: &Contact<S>,
+    at: &Acting<S>,
+    now: &State<S>,
+    cot: Cotangent<S>,
+    out: &mut Pulled<S>,
+) {
+    let mut by_place = cot.place;
+    by_place += pull_velocity(&at.a, &now.place, cot.velocity, &mut out.a);
+    by_place += pull_velocity(&at.b, &now.place, -cot.velocity, &mut out.b);
+    let (n, by_depth) = (now.normal, cot.penetration);
+    let none = Vec3::zeros();
+    let radius_b = match &contact.surface {
+        Surface::Plane { normal } => {
+            out.scalars[RADIUS_A] += by_depth - n.dot(&by_place);
+            pull_point(&at.a, [by_place - n * by_depth, none], &mut out.a);
+            pull_point(&at.b, [n * by_depth, none], &mut out.b);
+            let by_normal = cot.normal - now.x * by_depth - by_place * contact.radius;
+            return pull_direction(&at.b, normal, by_normal, out);
+        }
+        Surface::Sphere { radius } | Surface::Capsule { radius, .. } => *radius,
+    };
+    let sum = contact.radius + radius_b;
+    // z = p − x R_A / R.
+    let by_share = -now.x.dot(&by_place) / (sum * sum);
+    out.scalars[RADIUS_A] += by_depth + by_share * radius_b;
+    out.scalars[RADIUS_B] += by_depth - by_share * contact.radius;
+    let across = cot.normal - n * n.dot(&cot.normal);
+    let by_x = across / now.distance - n * by_depth - by_place * now.share;
+    let by_y = match &contact.surface {
+        Surface::Capsule { half, .. } => {
+            let a = at.b.motion.rotation * half;
+            let (s, between) = now.along;
+            let (by_y, by_a) = match between {
+                true => {
+                    // x = y − a s, s = y·a / a·a.
+                    let y = now.x + a * s;
+                    let part = a.dot(&by_x) / a.dot(&a);
+                    let by_a = -(by_x * s) - (y - a * (s * 2.0)) * part;
+                    (by_x - a * part, by_a)
+                }
+                false => (by_x, -(by_x * s)),
+            };
+            pull_direction(&at.b, half, by_a, out);
+            by_y
+        }
+        Surface::Sphere { .. } | Surface::Plane { .. } => by_x,
+    };
+    pull_point(&at.a, [by_y + by_place, none], &mut out.a);
+    pull_point(&at.b, [-by_y, none], &mut out.b);
+}
+
+/// Adds the derivatives in the parameters of a contact to their cotangents.
+pub(super) fn give(pulled: &Pulled<f64>, own: &mut Contact<f64>) {
+    let scalars = &pulled.scalars;
+    own.point_a += pulled.a.frame.point;
+    own.point_b += pulled.b.frame.point;
+    own.radius += scalars[RADIUS_A];
+    own.friction += scalars[FRICTION];
+    own.slip += scalars[SLIP];
+    stop::give_law(&scalars[LAW..], &mut own.law);
+    match &mut own.surface {
+        Surface::Plane { normal } => *normal += pulled.direction,
+        Surface::Sphere { radius } => *radius += scalars[RADIUS_B],
+        Surface::Capsule { half, radius } => {
+            *half += pulled.direction;
+            *radius += scalars[RADIUS_B];
+        }
+    }
+}

@@ -1,0 +1,172 @@
+//! Quantities of springs, stops and contacts for functions, with their derivatives.
+
+use super::power::{angle, stretch, tension, torsion, turn_rate};
+use super::pull::{Pulled, pull_angle, pull_rate, pull_turn};
+use super::{Acting, contact, for_each_load, give_to_parameters, give_to_states, stop};
+use crate::math::Scalar;
+use crate::model::{Contact, LoadKind};
+use crate::system::InMotion;
+use crate::system::joints::JointCotangent;
+
+/// Kind of quantity of a load.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum LoadPart {
+    /// The distance of the points of a spring \[m\].
+    Length,
+    /// The force by which a spring pulls its points together, damping included \[N\].
+    Tension,
+    /// The torque by which a torsion spring turns its joint back, damping included \[N m\].
+    Torque,
+    /// How deep a stop or a contact is entered; negative before it \[m\].
+    Penetration,
+    /// The same of the stop of an angle \[rad\].
+    PenetrationAngle,
+    /// Normal force of a stop or a contact, never negative \[N\].
+    NormalForce,
+    /// The same of the stop of an angle \[N m\].
+    NormalTorque,
+    /// Size of the friction of a contact \[N\].
+    Friction,
+}
+
+/// A measure of a load.
+#[derive(Clone, Copy, Debug)]
+pub struct LoadMeasure {
+    /// The load.
+    pub load: usize,
+    /// The quantity.
+    pub part: LoadPart,
+}
+
+/// Its value in a motion.
+pub fn value<S: Scalar>(at: &InMotion<S>, measure: LoadMeasure) -> S {
+    let mut value = S::zero();
+    for_each_load(at.model, at.motions, |i, kind, acting| {
+        if i == measure.load {
+            value = of(kind, acting, measure.part);
+        }
+    });
+    value
+}
+
+const CHECKED: &str = "a load has this measure, which is checked";
+
+fn of<S: Scalar>(kind: &LoadKind<S>, at: &Acting<S>, part: LoadPart) -> S {
+    match part {
+        LoadPart::Length => stretch(at, spring(kind)).length,
+        LoadPart::Tension => {
+            let law = spring(kind);
+            tension(&stretch(at, law), law)
+        }
+        LoadPart::Torque => torsion(at, torsion_spring(kind)),
+        LoadPart::Penetration | LoadPart::PenetrationAngle => match kind {
+            LoadKind::Contact(own) => contact::penetration(own, at),
+            _ => stop::of(kind).expect(CHECKED).penetration(at),
+        },
+        LoadPart::NormalForce | LoadPart::NormalTorque => match kind {
+            LoadKind::Contact(own) => contact::normal(own, at),
+            _ => stop::of(kind).expect(CHECKED).normal(at),
+        },
+        LoadPart::Friction => contact::tangential(touching(kind), at),
+    }
+}
+
+/// Rest length, k, k3 and c of a spring.
+fn spring<S: Scalar>(kind: &LoadKind<S>) -> [S; 4] {
+    let LoadKind::Spring {
+        rest_length,
+        stiffness,
+        cubic,
+        damping,
+        ..
+    } = kind
+    else {
+        unreachable!("{CHECKED}")
+    };
+    [*rest_length, *stiffness, *cubic, *damping]
+}
+
+/// The contact that a load is.
+fn touching<S>(kind: &LoadKind<S>) -> &Contact<S> {
+    let LoadKind::Contact(own) = kind else {
+        unreachable!("{CHECKED}")
+    };
+    own
+}
+
+/// Rest angle, k and c of a torsion spring.
+fn torsion_spring<S: Scalar>(kind: &LoadKind<S>) -> [S; 3] {
+    let LoadKind::TorsionSpring {
+        rest_angle,
+        stiffness,
+        damping,
+        ..
+    } = kind
+    else {
+        unreachable!("{CHECKED}")
+    };
+    [*rest_angle, *stiffness, *damping]
+}
+
+/// Adds `weight` times the derivative of [`value`] to states and parameters.
+pub fn pull_back(at: &InMotion<f64>, measure: LoadMeasure, weight: f64, out: &mut JointCotangent) {
+    for_each_load(at.model, at.motions, |i, kind, acting| {
+        if i == measure.load {
+            let pulled = pull(kind, acting, measure.part, weight);
+            give_to_states(&pulled, acting, at.numbering, (&mut out.y, &mut out.v));
+            give_to_parameters(kind, &pulled, (i, 0.0), (out.model, &mut 0.0));
+        }
+    });
+}
+
+fn pull(kind: &LoadKind<f64>, at: &Acting<f64>, part: LoadPart, weight: f64) -> Pulled<f64> {
+    let mut out = Pulled::zero();
+    match part {
+        LoadPart::Length => {
+            let now = stretch(at, spring(kind));
+            pull_rate(at, &now, (weight, 0.0), &mut out);
+        }
+        LoadPart::Tension => {
+            let law @ [rest_length, stiffness, cubic, damping] = spring(kind);
+            let now = stretch(at, law);
+            let x = now.length - rest_length;
+            let by_length = weight * (stiffness + 3.0 * cubic * x * x);
+            pull_rate(at, &now, (by_length, weight * damping), &mut out);
+            out.set_scalars([
+                -by_length,
+                weight * x,
+                weight * x * x * x,
+                weight * now.rate,
+            ]);
+        }
+        LoadPart::Torque => {
+            let [rest_angle, stiffness, damping] = torsion_spring(kind);
+            pull_angle(at, weight * stiffness, &mut out);
+            pull_turn(at, weight * damping, &mut out);
+            out.set_scalars([
+                -(weight * stiffness),
+                weight * angle(at, rest_angle),
+                weight * turn_rate(at),
+            ]);
+        }
+        LoadPart::Penetration | LoadPart::PenetrationAngle => {
+            if let LoadKind::Contact(own) = kind {
+                contact::pull_penetration(own, at, weight, &mut out);
+                return out;
+            }
+            let stop = stop::of(kind).expect(CHECKED);
+            stop.pull_penetration(at, weight, &mut out);
+        }
+        LoadPart::Friction => contact::pull_tangential(touching(kind), at, weight, &mut out),
+        LoadPart::NormalForce | LoadPart::NormalTorque => {
+            if let LoadKind::Contact(own) = kind {
+                contact::pull_normal(own, at, weight, &mut out);
+                return out;
+            }
+            stop::of(kind)
+                .expect(CHECKED)
+                .pull_normal(at, weight, &mut out);
+        }
+    }
+    out
+}
