@@ -8,6 +8,7 @@
 //! small machine has its whole space, and all eigenvalues of it.
 
 use super::pencil::Matrices;
+use super::ritz::schur;
 use crate::linalg::SparseLu;
 use crate::math::Complex64;
 use crate::math::slices::{add_scaled, dot};
@@ -27,8 +28,6 @@ const CONVERGED: f64 = 1e-6;
 /// σ, as a part of the largest eigenvalue that is wanted; and eigenvalues that count, relative to it.
 const PART: f64 = 0.25;
 const FREE: f64 = 1e-5;
-/// Most iterations for the eigenvalues of a small matrix.
-const SWEEPS: usize = 10_000;
 
 /// Eigenvalues with positive imaginary part by size |s|.
 pub(super) struct Found {
@@ -146,7 +145,7 @@ impl Space<'_> {
             return None;
         }
         let largest = h.norm();
-        let schur = h.try_schur(f64::EPSILON, SWEEPS)?;
+        let schur = schur(&h)?;
         let values = schur.complex_eigenvalues();
         let mut out: Vec<Complex64> = (values.iter())
             // Zero: what has no inertia.

@@ -22,6 +22,8 @@ pub(super) const FLOOR: f64 = 1e-6;
 pub(super) const FREE: f64 = 1e-10;
 /// Round-off of a stiffness, relative to the largest.
 const NOISE: f64 = 1e-12;
+/// The least stiffness of a vibration among soft motions, relative to the largest: less is a trace of it in a free one.
+const ELASTIC: f64 = 1e-7;
 /// A body takes part in a free motion if it moves by this part of the largest.
 const MOVES: f64 = 0.05;
 /// Inverse iterations of a free motion.
@@ -243,7 +245,7 @@ impl Solver<'_> {
         let soft = self.soft_motions(factors, &at)?.into_iter();
         let elastic = soft
             .map(|(rate, _)| rate)
-            .filter(|&rate| rate > NOISE * stiffest);
+            .filter(|&rate| rate > ELASTIC * stiffest);
         // Without soft ones all are above the least σ.
         Ok(Some(elastic.fold(FLOOR.sqrt() * stiffest, f64::min)))
     }

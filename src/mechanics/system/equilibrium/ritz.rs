@@ -1,14 +1,15 @@
 //! Arnoldi's method for eigenvalues μ of A y = μ y, of largest size first.
 
 use crate::math::slices::{add_scaled, dot};
-use nalgebra::DMatrix;
+use nalgebra::{DMatrix, Dyn, Schur};
 
 /// Largest dimension of the Krylov space.
 const DIMENSION: usize = 24;
 /// Largest residual |A y − μ y|, relative to |μ|, for |y| = 1 in the metric.
 const CONVERGED: f64 = 1e-2;
-/// Most iterations for the eigenvalues of a small matrix.
-const SWEEPS: usize = 1000;
+/// Most iterations for the eigenvalues of a small matrix, and what is zero there, beside its neighbours.
+const SWEEPS: usize = 10_000;
+const ROUNDINGS: [f64; 3] = [f64::EPSILON, 1e-10, 1e-6];
 /// A vector lies in the space of those before if this part of it is left; and so does one that is found again.
 const DEPENDENT: f64 = 1e-8;
 const DISTINCT: f64 = 0.1;
@@ -123,6 +124,12 @@ fn one_of_each(
     Some(all)
 }
 
+/// The Schur form of a small matrix. Where many eigenvalues are equal but for noise, iterations do not reach round-off.
+pub(super) fn schur(matrix: &DMatrix<f64>) -> Option<Schur<f64, Dyn>> {
+    let mut all = ROUNDINGS.iter();
+    all.find_map(|&rounding| matrix.clone().try_schur(rounding, SWEEPS))
+}
+
 /// Real eigenvalues that count of the columns of a Hessenberg matrix, with unit eigenvectors.
 fn of_hessenberg(
     columns: &[Vec<f64>],
@@ -133,7 +140,7 @@ fn of_hessenberg(
         return Some(Vec::new());
     }
     let h = DMatrix::from_fn(k, k, |i, j| columns[j].get(i).copied().unwrap_or(0.0));
-    let schur = h.clone().try_schur(f64::EPSILON, SWEEPS)?;
+    let schur = schur(&h)?;
     let values = schur.complex_eigenvalues();
     let largest = values.iter().fold(0.0_f64, |m, x| m.max(x.norm()));
     let real = values.iter().filter(|x| x.im == 0.0).map(|x| x.re);
