@@ -329,7 +329,7 @@ fn no_contact_is_missed_between_steps() {
         "{implicit:?} {found:?}"
     );
     for method in [json!("dop853"), json!({"bdf": {"order": 2}})] {
-        document["simulation"] = json!({"duration": 2, "steps": 51, "method": method});
+        document["simulation"] = json!({"duration": 2, "steps": 5, "method": method});
         let problem = parsed(&document);
         let failure = simulate(&problem, &problem.start())
             .err()
@@ -394,7 +394,7 @@ fn fifty_contacts() {
     let contacts = motion.at.function(1).value / 8.0;
     assert!(contacts > 50.0, "{contacts}");
     let energy = motion.at.function(0).value;
-    assert!((energy - 4.0).abs() < 1e-5, "{energy}");
+    assert!((energy / 4.0 - 1.0).abs() < 1e-5, "{energy}");
     document["functions"]
         .as_object_mut()
         .expect("an object")
