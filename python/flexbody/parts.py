@@ -3855,6 +3855,32 @@ class quantities(Kinds):
 
     @staticmethod
     @checked
+    def frequency(*, mode: Integer) -> Quantity:
+        """A natural frequency of the machine about its state at the instant, drives held [Hz].
+
+        Parameters
+        ----------
+        mode : integer from 1 to 150
+            Number of the damped mode from 1, by its rate |s|. Motions that do not oscillate, being free or damped
+            beyond ζ = 1, are not counted.
+        """
+        return made(Quantity, "quantities.frequency", locals())
+
+    @staticmethod
+    @checked
+    def damping_ratio(*, mode: Integer) -> Quantity:
+        """The damping ratio of such a vibration.
+
+        Parameters
+        ----------
+        mode : integer from 1 to 150
+            Number of the damped mode from 1, by its rate |s|. Motions that do not oscillate, being free or damped
+            beyond ζ = 1, are not counted.
+        """
+        return made(Quantity, "quantities.damping_ratio", locals())
+
+    @staticmethod
+    @checked
     def contact_force(*, load: str) -> Quantity:
         """Normal force of a stop or contact [N], or the torque of a stop of an angle [N m]; never negative.
 
@@ -4608,7 +4634,7 @@ class functions(Kinds):
 
     @staticmethod
     @checked
-    def frequency(*, mode: Integer, damped: bool | None = None) -> Function:
+    def frequency(*, mode: Integer, damped: bool | None = None, follow: bool | None = None) -> Function:
         """A natural frequency [Hz].
 
         Parameters
@@ -4619,6 +4645,9 @@ class functions(Kinds):
             Whether the frequency is that of the damped oscillation of a machine, |Im s| / 2π, numbered as
             "damping_ratio" does. Default: the natural frequency without damping. In steady rotation all frequencies
             are damped ones.
+        follow : bool, optional
+            Whether the mode is followed by its shape while the design changes: "mode" is its number at the start of
+            the file. Default: modes are counted by frequency at each design.
         """
         return made(Function, "functions.frequency", locals())
 
@@ -4660,7 +4689,7 @@ class functions(Kinds):
 
     @staticmethod
     @checked
-    def damping_ratio(*, mode: Integer) -> Function:
+    def damping_ratio(*, mode: Integer, follow: bool | None = None) -> Function:
         """Damping ratio of a mode of a machine: 0 without damping, 1 where no oscillation is left, below 0 if it grows.
 
         Parameters
@@ -4668,6 +4697,9 @@ class functions(Kinds):
         mode : integer from 1 to 150
             Number of the damped mode from 1, by its rate |s|: that of "frequency" with "damped". Motions that do not
             oscillate, being free or damped beyond ζ = 1, are not counted.
+        follow : bool, optional
+            Whether the mode is followed by its shape while the design changes: "mode" is its number at the start of
+            the file. Default: modes are counted by |s| at each design.
         """
         return made(Function, "functions.damping_ratio", locals())
 
