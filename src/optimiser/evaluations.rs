@@ -20,8 +20,10 @@ const FAILED_DESIGNS_KEPT: usize = 100;
 
 /// A method ends after so many failures in succession. A step that was halved as often is lost in
 /// the tolerances: the point lies at the edge of the region where the functions are defined, or
-/// they fail for good. It also ends after twice as many if they are most of its evaluations: it follows the edge.
+/// they fail for good.
 const MOST_FAILURES: usize = 24;
+/// It also ends after so many failures if they are most of its evaluations: it follows the edge.
+const AT_THE_EDGE: usize = 60;
 
 /// Scaled residuals and their derivatives in the free variables.
 pub(crate) type ScaledResiduals = (DVector<f64>, DMatrix<f64>);
@@ -208,7 +210,7 @@ impl Program<'_> {
     fn unless_it_fails_for_good(&self) -> Result<(), EarlyExit> {
         let failures = self.counts.failures - self.forgiven.failures;
         let evaluations = self.counts.evaluations - self.forgiven.evaluations;
-        let mostly = failures > 2 * MOST_FAILURES && 3 * failures > 2 * evaluations;
+        let mostly = failures > AT_THE_EDGE && 3 * failures > 2 * evaluations;
         match self.failures_in_succession >= MOST_FAILURES || mostly {
             true => Err(EarlyExit::Halt(Status::Stalled)),
             false => Ok(()),

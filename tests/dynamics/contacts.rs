@@ -293,7 +293,7 @@ fn energy_is_in_balance() {
     assert!(total(seen.len() - 1) < total(0) - 0.01 * size);
 }
 
-/// The scene turned as a whole, in millimetres, with its bodies in another order, and mirrored.
+/// The scene turned as a whole, and with its bodies in another order.
 #[test]
 fn the_same_in_other_descriptions() {
     let document = tumbling(json!({"duration": 0.5, "tolerance": 1e-10}));

@@ -123,7 +123,7 @@ fn a_pendulum_enters_its_stop_as_deep_as_its_energy_allows() {
         "version": 1, "name": "pendulum",
         "bodies": {"bar": {"shape": {"rod": {"length": 1, "radius": 0.01}}, "mass": 2,
                            "points": {"a": [-0.5, 0, 0]},
-                           "place": {"put": "a", "turn": {"axis": [0, 0, 1], "angle": -1.5707963267948966}}}},
+                           "place": {"put": "a", "turn": {"axis": [0, 0, 1], "degrees": -90}}}},
         "joints": {"pin": {"revolute": {"between": ["bar", "ground"], "at": [0, 0, 0], "axis": [0, 0, 1],
                                         "start": {"turn": {"angle": first, "rate": rate}}}}},
         "loads": {"stop": {"stop": {"joint": "pin", "upper": 0, "stiffness": k, "width": 0.01}}},

@@ -159,20 +159,22 @@ fn refined(
     solve_once: impl Fn(&DVector<f64>, &DVector<f64>) -> (DVector<f64>, DVector<f64>),
 ) -> (DVector<f64>, DVector<f64>) {
     let (mut dx, mut dy) = solve_once(p, q);
+    if !refines {
+        return (dx, dy);
+    }
     let size = p.amax().max(q.amax());
     let mut last = f64::INFINITY;
-    while refines {
+    loop {
         let rp = rest(p, &dx) - a.tr_mul(&dy);
         let rq = q - a * &dx + damping(&dy);
         let residual = rp.amax().max(rq.amax());
         let falls = residual < last;
         if residual <= ROUND_OFF * size || !falls {
-            break;
+            return (dx, dy);
         }
         last = residual;
         let (ex, ey) = solve_once(&rp, &rq);
         dx += ex;
         dy += ey;
     }
-    (dx, dy)
 }

@@ -153,15 +153,16 @@ mod tests {
     }
 
     /// Depths below, within and above the onset; rates of approach, of separation, and where the bracket is cut off.
-    fn states() -> impl Iterator<Item = (f64, f64, f64)> {
-        let depths = [-0.3, -0.08, -0.01, 0.03, 0.09, 0.4];
-        let rates = [-5.0, -1.68, -1.6, -0.7, 0.0, 0.9];
-        [1.0, 1.5, 2.2].into_iter().flat_map(move |n| {
-            let pairs = depths
-                .into_iter()
-                .flat_map(move |x| rates.map(|rate| (x, rate)));
-            pairs.map(move |(x, rate)| (n, x, rate))
-        })
+    fn states() -> Vec<(f64, f64, f64)> {
+        let mut all = Vec::new();
+        for n in [1.0, 1.5, 2.2] {
+            for depth in [-0.3, -0.08, -0.01, 0.03, 0.09, 0.4] {
+                for rate in [-5.0, -1.68, -1.6, -0.7, 0.0, 0.9] {
+                    all.push((n, depth, rate));
+                }
+            }
+        }
+        all
     }
 
     fn agree(given: f64, exact: f64, what: &str) {
