@@ -155,13 +155,17 @@ impl Solver<'_> {
         let residual = layout.residual(self.model, self.given, &x);
         let turning = layout.turning.as_ref();
         let spin = turning.map_or(0.0, |own| own.speed * own.speed);
-        let without_joints = self.rate(&residual);
-        // Gravity is a load of every machine.
-        if self.model.gravity.norm() == 0.0
+        let mut without_joints = self.rate(&residual);
+        // Gravity is a load of every machine, and rotation one of those that turn.
+        if turning.is_none()
+            && self.model.gravity.norm() == 0.0
             && let Some(rate) = self.rate_of_stiffness(factors, (&x, without_joints))?
         {
-            x.rate = rate.max(spin);
+            x.rate = rate;
             return Ok(x);
+        }
+        if without_joints == 0.0 {
+            without_joints = 1.0;
         }
         let shift = ALONG_FORCES * without_joints;
         let made = factors.make(layout, self.model, (&x, shift));

@@ -22,6 +22,8 @@ pub(super) const FLOOR: f64 = 1e-6;
 pub(super) const FREE: f64 = 1e-10;
 /// Round-off of a stiffness, relative to the largest.
 const NOISE: f64 = 1e-12;
+/// The largest rate of a machine that nothing loads, relative to that.
+const UNLOADED: f64 = 1e-4;
 /// The least stiffness of a vibration among soft motions, relative to the largest: less is a trace of it in a free one.
 const ELASTIC: f64 = 1e-7;
 /// A body takes part in a free motion if it moves by this part of the largest.
@@ -226,8 +228,7 @@ impl Solver<'_> {
         factors: &mut Factors,
         (placed, loaded): (&State<f64>, f64),
     ) -> Result<Option<f64>, AssemblyFailure> {
-        let turning = self.given.turning.as_ref();
-        let matrices = Matrices::new(At::rest(self.layout, self.model, placed, turning), false);
+        let matrices = Matrices::new(At::rest(self.layout, self.model, placed, None), false);
         let [stiff, heavy] = [&matrices.stiffness, &matrices.mass].map(diagonal);
         let stiffest = (stiff.iter().zip(&heavy))
             .map(|(k, m)| k / m)
@@ -246,8 +247,7 @@ impl Solver<'_> {
         let elastic = soft
             .map(|(rate, _)| rate)
             .filter(|&rate| rate > ELASTIC * stiffest);
-        // Without soft ones all are above the least σ.
-        Ok(Some(elastic.fold(FLOOR.sqrt() * stiffest, f64::min)))
+        Ok(Some(elastic.fold(UNLOADED * stiffest, f64::min)))
     }
 
     /// Motions y with K y = λ M̃ y on G y = 0 and their λ, those with λ below the least σ, with the factors of a solution.
