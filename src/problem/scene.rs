@@ -21,13 +21,11 @@ use crate::schema::loads::Load;
 use crate::schema::mechanics::{Body, Shape};
 use crate::schema::modes::DampingRatio;
 use crate::schema::statics::Frequency;
+use crate::structures::modes::BEYOND;
 use crate::system::Numbering;
 use crate::system::equilibrium::{Follow, Request, Turning, Vibrations, WantedModes, settle};
 use crate::system::failure::AssemblyFailure;
 use crate::system::placement::guess;
-
-/// Modes beyond the wanted ones among which followed ones are sought.
-const BEYOND: usize = 8;
 
 /// Default gravity \[m/s²\].
 pub const GRAVITY: [f64; 3] = [0.0, -9.81, 0.0];
@@ -80,8 +78,8 @@ pub fn with_places<S: Scalar>(
         let request = Request {
             sought,
             turning: turning(document, x),
-            modes: wanted_modes(document),
-            followed: followed(document),
+            modes: wanted_modes(document, &builder.followed),
+            followed: builder.followed.clone(),
         };
         let mobilities: Vec<Mobility> = model.bodies.iter().map(|body| body.mobility).collect();
         if document.is_rest() {
@@ -129,7 +127,7 @@ pub fn without_spin<S: Scalar>(document: &Document, model: &mut Model<S>) {
 }
 
 /// The modes about rest that functions need.
-fn wanted_modes(document: &Document) -> WantedModes {
+fn wanted_modes(document: &Document, followed: &[Follow]) -> WantedModes {
     let mut wanted = WantedModes::default();
     for function in document.functions.values() {
         match function.of_motion() {
@@ -151,7 +149,7 @@ fn wanted_modes(document: &Document) -> WantedModes {
             _ => {}
         }
     }
-    if !followed(document).is_empty() {
+    if !followed.is_empty() {
         wanted.beyond = BEYOND;
     }
     wanted

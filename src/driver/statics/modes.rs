@@ -2,10 +2,7 @@
 
 use super::{StaticDesign, StaticsFailure, of_modes};
 use crate::problem::{Asked, Problem};
-use crate::structures::modes::{LIKE, ModalFailure, lowest_frequency};
-
-/// Modes beyond the wanted ones among which followed ones are sought.
-const BEYOND: usize = 8;
+use crate::structures::modes::{BEYOND, LIKE, ModalFailure, lowest_frequency};
 
 impl StaticDesign {
     /// Finds the modes that the functions `which` need.

@@ -7,9 +7,9 @@
 
 use crate::math::Scalar;
 use crate::model::Model;
-use crate::system::BodyMotion;
 use crate::system::loads::course::Course;
 use crate::system::loads::gaps::{Gap, gaps, may_touch};
+use crate::system::{BodyMotion, Numbering};
 
 /// A contact that a step passes over.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -27,13 +27,18 @@ pub struct Touches {
 }
 
 impl Touches {
-    /// Watches the stops of a model from its start; `None` if it has none.
-    pub fn open<S: Scalar>(model: &Model<S>, motions: &[BodyMotion<S>]) -> Option<Self> {
+    /// Watches the stops and contacts of a model from its start (q, v); `None` if it has none.
+    pub fn open<S: Scalar>(
+        model: &Model<S>,
+        numbering: &Numbering,
+        (q, v): (&[S], &[S]),
+    ) -> Option<Self> {
         if !model.loads.iter().any(|load| may_touch(&load.kind)) {
             return None;
         }
-        let mut before = Vec::new();
-        gaps(model, motions, &mut before);
+        let (mut before, mut motions) = (Vec::new(), Vec::new());
+        BodyMotion::all(numbering, q, v, &mut motions);
+        gaps(model, &motions, &mut before);
         Some(Self {
             before,
             after: Vec::new(),

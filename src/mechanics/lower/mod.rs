@@ -126,21 +126,12 @@ impl Lowering {
 
     /// No reduction, as a function looks at vibrations of the whole machine.
     fn none() -> Self {
-        let every = |reduction: &str| Kept {
-            reduction: reduction.to_owned(),
-            obstacles: vec![ViolatedCondition::plain(
-                "a function looks at vibrations of the whole machine in all directions",
-            )],
+        let what = "a function looks at vibrations of the whole machine in all directions";
+        let plane = Kept {
+            reduction: "a plane".to_owned(),
+            obstacles: vec![ViolatedCondition::plain(what)],
         };
-        Self {
-            welded: Welded::default(),
-            plane: Err(every("a plane")),
-            points: Vec::new(),
-            non_rotating: NonRotating::default(),
-            fixed: Fixed::default(),
-            kept: Vec::new(),
-            redundant: Vec::new(),
-        }
+        Self::of_plane_and_points(Err(plane), (Vec::new(), Vec::new()))
     }
 
     /// The reductions of scenes with flexible bodies: a plane, or else the rotation of bodies that
@@ -152,6 +143,13 @@ impl Lowering {
         if plane.is_err() {
             points = find_points(designs, |body| model.is_of_flexible(body), &mut kept);
         }
+        Self::of_plane_and_points(plane, (points, kept))
+    }
+
+    fn of_plane_and_points(
+        plane: Result<Plane, Kept>,
+        (points, kept): (Vec<usize>, Vec<Kept>),
+    ) -> Self {
         Self {
             welded: Welded::default(),
             plane,

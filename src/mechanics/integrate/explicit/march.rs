@@ -134,8 +134,7 @@ pub fn march<S: SolveScalar>(
         }
         _ => None,
     };
-    BodyMotion::all(numbering, &from.q, &from.v, &mut motions);
-    let mut touches = Touches::open(model, &motions);
+    let mut touches = Touches::open(model, numbering, (&from.q, &from.v));
     while let Some(width) = controller.next(run.grid.reached()) {
         let begin = run.grid.reached();
         let h = run.grid.size(duration, width, begin);

@@ -189,8 +189,7 @@ fn march_until<S: SolveScalar>(
         BodyMotion::all(numbering, &past.from.q, &past.from.v, &mut motions);
         ledger.enter(model, &motions, 0.0);
     }
-    BodyMotion::all(numbering, &past.from.q, &past.from.v, &mut motions);
-    let mut touches = Touches::open(model, &motions);
+    let mut touches = Touches::open(model, numbering, (&past.from.q, &past.from.v));
     while let Some(width) = controller.next(run.grid.reached()) {
         if let Some(stretch) = &stretch
             && stretch.is_over(run.counts.implicit_work())

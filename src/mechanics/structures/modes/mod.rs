@@ -87,6 +87,8 @@ pub enum ModalFailure {
 
 /// The least assurance of a mode that counts as one that is followed.
 pub const LIKE: f64 = 0.5;
+/// Modes beyond the wanted ones among which followed ones are sought.
+pub const BEYOND: usize = 8;
 
 /// Counted work of [`ModalProblem::solve`].
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]

@@ -12,7 +12,7 @@ use super::eigenpairs::{Cluster, clusters};
 use super::equations::State;
 use super::krylov::lowest;
 use super::modes::{Vibration, WantedModes};
-use super::pencil::{At, Between, Matrices, contracted};
+use super::pencil::{At, Matrices, contracted};
 use super::rest::FREE;
 use super::{KnownStarts, Solver};
 use crate::math::{Complex64, Scalar};
@@ -168,18 +168,10 @@ pub(super) fn damped_vibrations<S: Scalar>(
         let mut pairs = Vec::new();
         let mut of = Vec::new();
         for (c, own) in spectrum.clusters.iter().enumerate() {
-            let count = own.values.len() as f64;
-            let mean = own.values.iter().sum::<Complex64>() / count;
-            let part = Complex64::new(-1.0 / count, 0.0);
             let damping = if spectrum.damped { 1.0 } else { 0.0 };
-            for (left, right) in own.left.iter().zip(&own.right) {
-                of.push(c);
-                pairs.push(Between {
-                    left,
-                    right,
-                    factors: [part, part * mean * damping, part * mean * mean],
-                });
-            }
+            let change = own.change(Complex64::new(1.0, 0.0), damping);
+            of.extend(change.iter().map(|_| c));
+            pairs.extend(change);
         }
         let sums = contracted(at, &pairs);
         for (c, [re, im]) in of.into_iter().zip(sums) {

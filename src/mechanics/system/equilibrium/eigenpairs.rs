@@ -10,7 +10,7 @@
 //! has the eigenvectors themselves as limits. Eigenvalues that are nearly equal have a common space, whose bases are made
 //! such that l_iᵀ (D + 2 s M) y_j = δ_ij.
 
-use super::pencil::{Matrices, product};
+use super::pencil::{Between, Matrices, product};
 use crate::linalg::SparseLu;
 use crate::math::Complex64;
 use crate::system::failure::AssemblyFailure;
@@ -33,6 +33,24 @@ pub(super) struct Cluster {
     pub right: Vec<Vec<Complex64>>,
     /// Left vectors with multipliers, not conjugated, biorthonormal to the right ones.
     pub left: Vec<Vec<Complex64>>,
+}
+
+impl Cluster {
+    /// The pairs whose sum is −w lᵀ (dK + s dD + s² dM) r, as a mean over the cluster, with its mean rate s; dD counts by
+    /// `damping`.
+    pub(super) fn change(&self, weight: Complex64, damping: f64) -> Vec<Between<'_>> {
+        let count = self.values.len() as f64;
+        let mean = self.values.iter().sum::<Complex64>() / count;
+        let part = -weight / count;
+        let pairs = self.left.iter().zip(&self.right);
+        pairs
+            .map(|(left, right)| Between {
+                left,
+                right,
+                factors: [part, part * mean * damping, part * mean * mean],
+            })
+            .collect()
+    }
 }
 
 type Vector = Vec<Complex64>;

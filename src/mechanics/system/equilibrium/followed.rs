@@ -12,7 +12,7 @@ use super::equations::State;
 use super::modes::{Mode, Vibration};
 use super::{KnownStarts, Solver};
 use crate::math::{Complex64, Scalar};
-use crate::structures::modes::LIKE;
+use crate::structures::modes::{LIKE, ModalFailure};
 use crate::system::failure::AssemblyFailure;
 use std::f64::consts::PI;
 
@@ -97,13 +97,15 @@ impl Solver<'_> {
         let best = all.max_by(|a, b| a.1.total_cmp(&b.1));
         match best {
             Some((k, like)) if like >= LIKE => Ok(k),
-            _ => Err(AssemblyFailure::NoModes {
-                why: format!(
-                    "no mode has the shape that mode {} has at the start: the nearest agrees to {:.0} % (modal assurance)",
-                    of.number + 1,
-                    100.0 * best.map_or(0.0, |own| own.1)
-                ),
-            }),
+            _ => {
+                let unlike = ModalFailure::Unlike {
+                    mode: of.number + 1,
+                    assurance: best.map_or(0.0, |own| own.1),
+                };
+                Err(AssemblyFailure::NoModes {
+                    why: unlike.to_string(),
+                })
+            }
         }
     }
 }

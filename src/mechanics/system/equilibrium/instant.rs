@@ -12,7 +12,7 @@
 use super::damped::{DampedVibration, Spectrum, damped_vibrations};
 use super::eigenpairs::{Cluster, clusters};
 use super::krylov::lowest;
-use super::pencil::{At, Between, Matrices, Moves, contracted};
+use super::pencil::{At, Matrices, Moves, contracted};
 use super::rest::FREE;
 use crate::math::{Complex64, Dual, Parameters, Scalar};
 use crate::model::Model;
@@ -67,8 +67,10 @@ impl<'a, S: Scalar> InstantState<'a, S> {
     /// # Errors
     /// Singular equations, or fewer vibrations.
     pub fn vibration(&self, number: usize) -> Result<DampedVibration<S>, AssemblyFailure> {
-        let real = RealState::of(self);
-        let spectrum = spectrum(&real.state(self.numbering, self.left_out), number)?;
+        let model = self.model.map(&mut |x: S| x.re());
+        let numbers = Numbers::of(self, |x| x.re());
+        let real = numbers.state(&model, (self.numbering, self.left_out));
+        let spectrum = spectrum(&real, number)?;
         let all = damped_vibrations(self.at(), &spectrum);
         Ok(all[number])
     }
@@ -116,36 +118,37 @@ fn rate(state: &InstantState<f64>) -> f64 {
     }
 }
 
-/// The real numbers of a state.
-struct RealState {
-    model: Model<f64>,
-    q: Vec<f64>,
-    v: Vec<f64>,
-    a: Vec<f64>,
-    lambda: Vec<f64>,
-    time: f64,
+/// The numbers of a state, without the model.
+#[derive(Clone, Debug)]
+struct Numbers<S> {
+    q: Vec<S>,
+    v: Vec<S>,
+    a: Vec<S>,
+    lambda: Vec<S>,
+    time: S,
 }
 
-impl RealState {
-    fn of<S: Scalar>(state: &InstantState<S>) -> Self {
-        let all = |x: &[S]| x.iter().map(|x| x.re()).collect();
+impl<S: Scalar> Numbers<S> {
+    /// Those of a state in another scalar.
+    fn of<T: Scalar>(state: &InstantState<T>, map: impl Fn(T) -> S) -> Self {
+        let all = |x: &[T]| x.iter().map(|&x| map(x)).collect();
         Self {
-            model: state.model.map(&mut |x: S| x.re()),
             q: all(state.q),
             v: all(state.v),
             a: all(state.a),
             lambda: all(state.lambda),
-            time: state.time.re(),
+            time: map(state.time),
         }
     }
 
+    /// The state of a model.
     fn state<'a>(
         &'a self,
-        numbering: &'a Numbering,
-        left_out: &'a RedundantRows,
-    ) -> InstantState<'a, f64> {
+        model: &'a Model<S>,
+        (numbering, left_out): (&'a Numbering, &'a RedundantRows),
+    ) -> InstantState<'a, S> {
         InstantState {
-            model: &self.model,
+            model,
             numbering,
             left_out,
             q: &self.q,
@@ -162,64 +165,20 @@ impl RealState {
 pub struct FrozenMode {
     numbering: Numbering,
     left_out: RedundantRows,
-    q: Vec<f64>,
-    v: Vec<f64>,
-    a: Vec<f64>,
-    lambda: Vec<f64>,
-    time: f64,
+    numbers: Numbers<Dual>,
     cluster: Cluster,
     weight: Complex64,
-}
-
-/// A state in dual numbers.
-struct Moved {
-    q: Vec<Dual>,
-    v: Vec<Dual>,
-    a: Vec<Dual>,
-    lambda: Vec<Dual>,
-    time: Dual,
 }
 
 impl FrozenMode {
     /// The derivative along a change of the model, whose real part is that of the state.
     pub fn along(&self, model: &Model<Dual>) -> f64 {
-        self.change(model, &self.still())
+        self.change(model, &self.numbers)
     }
 
-    fn still(&self) -> Moved {
-        let all = |x: &[f64]| x.iter().map(|&x| Dual::new(x, 0.0)).collect();
-        Moved {
-            q: all(&self.q),
-            v: all(&self.v),
-            a: all(&self.a),
-            lambda: all(&self.lambda),
-            time: Dual::new(self.time, 0.0),
-        }
-    }
-
-    fn change(&self, model: &Model<Dual>, moved: &Moved) -> f64 {
-        let state = InstantState {
-            model,
-            numbering: &self.numbering,
-            left_out: &self.left_out,
-            q: &moved.q,
-            v: &moved.v,
-            a: &moved.a,
-            lambda: &moved.lambda,
-            time: moved.time,
-        };
-        let count = self.cluster.values.len() as f64;
-        let mean = self.cluster.values.iter().sum::<Complex64>() / count;
-        let part = -self.weight / count;
-        let both = self.cluster.left.iter().zip(&self.cluster.right);
-        let pairs: Vec<Between> = both
-            .map(|(left, right)| Between {
-                left,
-                right,
-                factors: [part, part * mean, part * mean * mean],
-            })
-            .collect();
-        let sums = contracted(state.at(), &pairs);
+    fn change(&self, model: &Model<Dual>, numbers: &Numbers<Dual>) -> f64 {
+        let state = numbers.state(model, (&self.numbering, &self.left_out));
+        let sums = contracted(state.at(), &self.cluster.change(self.weight, 1.0));
         sums.iter().map(|[re, _]| re.infinitesimal()).sum()
     }
 }
@@ -256,18 +215,14 @@ impl InstantState<'_, f64> {
         let by_model = FrozenMode {
             numbering: self.numbering.clone(),
             left_out: self.left_out.clone(),
-            q: self.q.to_vec(),
-            v: self.v.to_vec(),
-            a: self.a.to_vec(),
-            lambda: self.lambda.to_vec(),
-            time: self.time,
+            numbers: Numbers::of(self, Dual::from),
             cluster: spectrum.clusters.swap_remove(cluster),
             // Re(w ds) is growth · Re ds + speed · Im ds.
             weight: Complex64::new(growth, -speed),
         };
         let model = self.model.map(&mut |x| Dual::new(x, 0.0));
-        let along = |change: &dyn Fn(&mut Moved)| {
-            let mut moved = by_model.still();
+        let along = |change: &dyn Fn(&mut Numbers<Dual>)| {
+            let mut moved = by_model.numbers.clone();
             change(&mut moved);
             by_model.change(&model, &moved)
         };

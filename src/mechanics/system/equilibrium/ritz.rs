@@ -46,15 +46,18 @@ pub(super) fn ritz_vectors(
     Some(all)
 }
 
-/// Removes the parts along orthonormal vectors with their products with the metric; twice, so that round-off of the first
-/// pass goes.
-fn without(known: &[[Vec<f64>; 2]], from: &mut [f64]) {
+/// Removes the parts along orthonormal vectors with their products with the metric, which it gives; twice, so that round-off
+/// of the first pass goes.
+fn without(known: &[[Vec<f64>; 2]], from: &mut [f64]) -> Vec<f64> {
+    let mut parts = vec![0.0; known.len()];
     for _ in 0..2 {
-        for [y, with_metric] in known {
+        for (part, [y, with_metric]) in parts.iter_mut().zip(known) {
             let along = dot(with_metric, from);
+            *part += along;
             add_scaled(from, -along, y);
         }
     }
+    parts
 }
 
 /// One vector of each eigenvalue that counts, in the space that is orthogonal to the known ones.
@@ -79,15 +82,7 @@ fn one_of_each(
     let mut columns: Vec<Vec<f64>> = Vec::new();
     loop {
         let before = dot(&next, &weighted(&next)).max(0.0).sqrt();
-        let mut column = vec![0.0; basis.len()];
-        // Twice, so that round-off of the first pass goes.
-        for _ in 0..2 {
-            for (part, [y, with_metric]) in column.iter_mut().zip(&basis) {
-                let along = dot(with_metric, &next);
-                *part += along;
-                add_scaled(&mut next, -along, y);
-            }
-        }
+        let mut column = without(&basis, &mut next);
         let mut metric = weighted(&next);
         let square = dot(&next, &metric);
         if !square.is_finite() {

@@ -134,6 +134,12 @@ fn slip<S: Scalar>(contact: &Contact<S>, now: &State<S>) -> Slip<S> {
     }
 }
 
+impl<S: Scalar> Slip<S> {
+    fn is_none(&self) -> bool {
+        self.tangential.iter().all(|x| x.re() == 0.0)
+    }
+}
+
 impl<S: Scalar> State<S> {
     /// N and its derivatives.
     fn force(&self, contact: &Contact<S>) -> normal_law::NormalForce<S> {
@@ -179,7 +185,7 @@ pub(super) fn normal<S: Scalar>(contact: &Contact<S>, at: &Acting<S>) -> S {
 pub(super) fn tangential<S: Scalar>(contact: &Contact<S>, at: &Acting<S>) -> S {
     let now = state(contact, at);
     let slip = slip(contact, &now);
-    if slip.tangential.iter().all(|x| x.re() == 0.0) {
+    if slip.is_none() {
         return S::zero();
     }
     contact.friction * now.force(contact).value * length(&slip.tangential) / slip.size
@@ -248,7 +254,7 @@ pub(super) fn pull<S: Scalar>(
     pull_state(contact, at, &now, cot, out);
 }
 
-/// Adds `weight` times the derivatives of N, and of μ N |v_t| / s if `with_friction`.
+/// Adds `weight` times the derivatives of N.
 pub(super) fn pull_normal<S: Scalar>(
     contact: &Contact<S>,
     at: &Acting<S>,
@@ -277,7 +283,7 @@ pub(super) fn pull_tangential<S: Scalar>(
 ) {
     let now = state(contact, at);
     let slip = slip(contact, &now);
-    if slip.tangential.iter().all(|x| x.re() == 0.0) {
+    if slip.is_none() {
         return;
     }
     let force = now.force(contact);

@@ -22,18 +22,7 @@ const FELT: f64 = 0.25;
 
 /// Whether a load presses only behind a limit.
 pub fn may_touch<S>(kind: &LoadKind<S>) -> bool {
-    match kind {
-        LoadKind::JointStop { .. } | LoadKind::DistanceStop { .. } | LoadKind::Contact(_) => true,
-        LoadKind::Force { .. }
-        | LoadKind::Torque { .. }
-        | LoadKind::Spring { .. }
-        | LoadKind::TorsionSpring { .. }
-        | LoadKind::Damping { .. }
-        | LoadKind::BallDamping { .. }
-        | LoadKind::Friction { .. }
-        | LoadKind::Drag { .. }
-        | LoadKind::Distributed(_) => false,
-    }
+    stop::of(kind).is_some() || matches!(kind, LoadKind::Contact(_))
 }
 
 /// Lists the gaps of all loads that may touch, always in the same order.

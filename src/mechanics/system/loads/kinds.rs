@@ -44,7 +44,7 @@ pub(super) fn pulled<S: Scalar>(
         LoadKind::Drag {
             coefficient, width, ..
         } => drag::pull(at, &virtually, [*coefficient, *width], &mut out),
-        _ => return pull::pull(kind, at, time, psi),
+        _ => pull::pull(kind, at, time, &virtually, &mut out),
     }
     out
 }

@@ -68,16 +68,15 @@ pub(super) fn with_motions<'a, S: Scalar>(
     }
 }
 
-/// Derivatives of ψᵀf.
+/// Adds the derivatives of ψᵀf; `virtually` has the velocities ψ.
 pub(super) fn pull<S: Scalar>(
     kind: &LoadKind<S>,
     at: &Acting<S>,
     time: S,
-    psi: &Virtual<S>,
-) -> Pulled<S> {
-    let mut out = Pulled::zero();
-    let motions = moving(at, psi);
-    let virtually = with_motions(at, &motions);
+    virtually: &Acting<S>,
+    out: &mut Pulled<S>,
+) {
+    let (psi_a, psi_b) = (virtually.a.motion, virtually.b.motion);
     match kind {
         LoadKind::Force {
             direction,
@@ -89,12 +88,12 @@ pub(super) fn pull<S: Scalar>(
             let m = magnitude.value(time);
             let by = match axes {
                 Axes::Ground => {
-                    let rate = MarkerKinematics::point(&motions[0], point).rate;
+                    let rate = MarkerKinematics::point(psi_a, point).rate;
                     pull_point(&virtually.a, [Vec3::zeros(), direction * m], &mut out.a);
                     rate
                 }
                 Axes::Body => {
-                    let (linear, angular) = psi[0];
+                    let (linear, angular) = (psi_a.velocity, psi_a.omega);
                     let local = at.a.motion.rotation.tr_mul(&linear);
                     out.a.theta += direction.cross(&local) * m;
                     out.a.frame.point += direction.cross(&angular) * m;
@@ -113,7 +112,7 @@ pub(super) fn pull<S: Scalar>(
             ..
         } => {
             let m = magnitude.value(time);
-            let omega = psi[0].1;
+            let omega = psi_a.omega;
             let by = match axes {
                 Axes::Ground => {
                     let local = at.a.motion.rotation.tr_mul(direction);
@@ -134,17 +133,18 @@ pub(super) fn pull<S: Scalar>(
         } => {
             let law = [*rest_length, *stiffness, *cubic, *damping];
             if may_meet(law) {
-                return pull_meeting((at, &virtually), law);
+                *out = pull_meeting((at, virtually), law);
+                return;
             }
             let now = stretch(at, law);
-            let virtual_rate = stretch(&virtually, law).rate;
+            let virtual_rate = stretch(virtually, law).rate;
             let x = now.length - *rest_length;
             let tension = x * (*stiffness + *cubic * x * x) + *damping * now.rate;
             // ψᵀf = −tension · (virtual rate).
             let by_length = -(*stiffness + *cubic * x * x * 3.0) * virtual_rate;
-            pull_rate(&virtually, &now, (S::zero(), -tension), &mut out);
-            hold_virtual(&mut out);
-            pull_rate(at, &now, (by_length, -(*damping * virtual_rate)), &mut out);
+            pull_rate(virtually, &now, (S::zero(), -tension), out);
+            hold_virtual(out);
+            pull_rate(at, &now, (by_length, -(*damping * virtual_rate)), out);
             out.set_scalars([
                 -by_length,
                 -(x * virtual_rate),
@@ -159,12 +159,12 @@ pub(super) fn pull<S: Scalar>(
             ..
         } => {
             let (x, rate) = (angle(at, *rest_angle), turn_rate(at));
-            let virtual_rate = turn_rate(&virtually);
+            let virtual_rate = turn_rate(virtually);
             let torque = *stiffness * x + *damping * rate;
-            pull_turn(&virtually, -torque, &mut out);
-            hold_virtual(&mut out);
-            pull_turn(at, -(*damping * virtual_rate), &mut out);
-            pull_angle(at, -(*stiffness * virtual_rate), &mut out);
+            pull_turn(virtually, -torque, out);
+            hold_virtual(out);
+            pull_turn(at, -(*damping * virtual_rate), out);
+            pull_angle(at, -(*stiffness * virtual_rate), out);
             out.scalars[0] = *stiffness * virtual_rate;
             out.scalars[1] = -(x * virtual_rate);
             out.scalars[2] = -(rate * virtual_rate);
@@ -175,7 +175,7 @@ pub(super) fn pull<S: Scalar>(
             ..
         } => {
             let (rate, virtual_rate) =
-                pull_along(at, &virtually, *dof, |rate| (-(*c * rate), -*c), &mut out);
+                pull_along(at, virtually, *dof, |rate| (-(*c * rate), -*c), out);
             out.scalars[0] = -(rate * virtual_rate);
         }
         LoadKind::Friction {
@@ -185,7 +185,7 @@ pub(super) fn pull<S: Scalar>(
                 let t = tanh(rate / *width);
                 (-(*size * t), -(*size * (S::one() - t * t) / *width))
             };
-            let (rate, virtual_rate) = pull_along(at, &virtually, *dof, law, &mut out);
+            let (rate, virtual_rate) = pull_along(at, virtually, *dof, law, out);
             let by_rate = law(rate).1;
             out.scalars[0] = -(tanh(rate / *width) * virtual_rate);
             out.scalars[1] = -(by_rate * virtual_rate * rate / *width);
@@ -193,7 +193,7 @@ pub(super) fn pull<S: Scalar>(
         LoadKind::BallDamping { coefficient, .. } => {
             let (ra, rb) = (&at.a.motion.rotation, &at.b.motion.rotation);
             let (wa, wb) = (at.a.motion.omega, at.b.motion.omega);
-            let (pa, pb) = (psi[0].1, psi[1].1);
+            let (pa, pb) = (psi_a.omega, psi_b.omega);
             // ψᵀf = −c X · Y with the relative angular velocities X (real) and Y (virtual).
             let (x, y) = (ra * wa - rb * wb, ra * pa - rb * pb);
             let c = *coefficient;
@@ -212,7 +212,6 @@ pub(super) fn pull<S: Scalar>(
         | LoadKind::Contact(_)
         | LoadKind::Distributed(_) => {}
     }
-    out
 }
 
 /// Derivatives of `weight` times a load's potential energy; `None` if it stores none.
