@@ -59,9 +59,10 @@ fn of_scene(
     let cells = at.run.has_cells;
     let limits = problem.simulation.limits.clone();
     let settings = halved(&at.run, (cells, !summed.is_empty()), limits);
-    let mut scene = at.scene.clone();
-    let run = event::settle(&mut scene, &settings, at.run.duration, Admit::Late)?;
-    let mut fine = at.with_run(scene, run);
+    let Finer {
+        mut fine,
+        is_halved,
+    } = finer(problem, at, &settings)?;
     let numbers = |of: &Evaluated, which: &[usize]| -> Result<Vec<Vec<f64>>, IntegrationFailure> {
         let mut all: Vec<Vec<f64>> = which.iter().map(|&f| vec![of.function(f).value]).collect();
         if gradients && !which.is_empty() && !problem.variables.is_empty() {
@@ -106,10 +107,13 @@ fn of_scene(
         false => quadrature::order(&at.run.instants),
     };
     let doubled = doubled(problem, at, (&summed[..], &between), which, &numbers)?;
-    let [steps, samples] = [at.run.method.order(), of_sums].map(|order| {
-        let gain = 2.0_f64.powi(order as i32);
-        gain / (gain - 1.0)
-    });
+    let gain = |order: usize| 2.0_f64.powi(order as i32);
+    let by_halving = |order: usize| gain(order) / (gain(order) - 1.0);
+    let samples = by_halving(of_sums);
+    let steps = match is_halved {
+        true => by_halving(at.run.method.order()),
+        false => 1.0,
+    };
     let mut all = Vec::new();
     let rows = which.iter().zip(coarse).zip(finer).zip(maxima);
     for (row, (((&function, coarse), finer), maximum)) in rows.enumerate() {
@@ -119,14 +123,13 @@ fn of_scene(
             false if cells => coarse.clone(),
             false => finer.clone(),
         };
-        let gain = steps / (steps - 1.0);
         let estimate = |(number, ((&h, &thin), &fine)): (usize, ((&f64, &f64), &f64))| {
             let (halving, of_samples) = match cells {
                 true => (thin - fine, (h - thin) * samples),
                 false => (h - thin, (thin - fine) * samples),
             };
             let of_steps = match &doubled {
-                Some(rows) => of_three(rows[row][number], halving, gain),
+                Some(rows) => of_three(rows[row][number], halving, gain(at.run.method.order())),
                 None => halving * steps,
             };
             Estimate {
@@ -165,6 +168,50 @@ fn of_scene(
         });
     }
     Ok(all)
+}
+
+/// A motion that is more accurate.
+struct Finer {
+    fine: Evaluated,
+    /// By halved steps, or by others.
+    is_halved: bool,
+}
+
+/// Steps of a tolerance that is smaller by this factor are taken for exact where halved ones fail.
+const TIGHTER: f64 = 1e-2;
+
+/// The motion by halved steps. Where these fail and steps follow a tolerance, it is that of a smaller tolerance: impacts move with
+/// the steps, and halves of the steps around one may pass over the next.
+///
+/// # Errors
+/// That of the halved steps, if both fail.
+fn finer(
+    problem: &Problem,
+    at: &Evaluated,
+    halved: &Settings,
+) -> Result<Finer, IntegrationFailure> {
+    let run = |settings: &Settings| -> Result<Evaluated, IntegrationFailure> {
+        let mut scene = at.scene.clone();
+        let run = event::settle(&mut scene, settings, at.run.duration, Admit::Late)?;
+        Ok(at.with_run(scene, run))
+    };
+    let failure = match run(halved) {
+        Ok(fine) => {
+            let is_halved = true;
+            return Ok(Finer { fine, is_halved });
+        }
+        Err(failure) => failure,
+    };
+    let Spacing::Tolerance(tolerance) = problem.simulation.spacing else {
+        return Err(failure);
+    };
+    let tighter = Settings {
+        spacing: Spacing::Tolerance(tolerance * TIGHTER),
+        ..halved.clone()
+    };
+    let fine = run(&tighter).map_err(|_| failure)?;
+    let is_halved = false;
+    Ok(Finer { fine, is_halved })
 }
 
 /// At rest there is no step, and no error of steps.

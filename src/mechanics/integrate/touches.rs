@@ -1,15 +1,21 @@
 //! Contacts that come and go within a step.
 //!
-//! The error of a step knows nothing of a force that no stage has met. So each stop or contact is followed over the step by
-//! the cubic through values and rates at both ends: of the penetration of joints and planes, and of the vector between the points of
-//! distances and spheres, whose length has a sharp bend where they fly past each other. The cubic errs by h⁴/384 times its fourth
-//! derivative. A step that begins and ends apart and touches between is repeated, and then ends where the cubic is deepest.
+//! The error of a step knows nothing of a force that no stage has met. So the bodies are followed over the step by the quintic
+//! through positions q, velocities and accelerations at both ends, Euler parameters likewise:
+//!
+//! ```text
+//! q(s) = Σ_e [ H_e0(s) q_e + h H_e1(s) q̇_e + h² H_e2(s) q̈_e ],   e the start and the end, 0 ≤ s ≤ 1
+//! ```
+//!
+//! It errs by h⁶/46080 times the sixth derivative: by 2e-5 of the length of what turns by 2 rad in the step. A step that begins and
+//! ends apart and touches between is repeated, and then ends where it is deepest.
 
 use crate::math::Scalar;
+use crate::math::rotation;
 use crate::model::Model;
-use crate::system::loads::course::Course;
+use crate::system::Numbering;
+use crate::system::bodies::{BodyMotion, positions_of, velocities_of};
 use crate::system::loads::gaps::{Gap, gaps, may_touch};
-use crate::system::{BodyMotion, Numbering};
 
 /// A contact that a step passes over.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -20,47 +26,61 @@ pub struct Missed {
     pub part: f64,
 }
 
-/// The gaps at the start of a step and at its end.
+/// A state as the quintic needs it: q, q̇ and q̈ by body, and its gaps.
+#[derive(Clone, Debug, Default)]
+struct End {
+    bodies: Vec<[[f64; 7]; 3]>,
+    gaps: Vec<Gap>,
+}
+
+/// The start of a step and its end.
 pub struct Touches {
-    before: Vec<Gap>,
-    after: Vec<Gap>,
+    before: End,
+    after: End,
 }
 
 impl Touches {
-    /// Watches the stops and contacts of a model from its start (q, v); `None` if it has none.
+    /// Watches the stops and contacts of a model from its start (q, v, v̇); `None` if it has none.
     pub fn open<S: Scalar>(
         model: &Model<S>,
         numbering: &Numbering,
-        (q, v): (&[S], &[S]),
+        start: [&[S]; 3],
     ) -> Option<Self> {
         if !model.loads.iter().any(|load| may_touch(&load.kind)) {
             return None;
         }
-        let (mut before, mut motions) = (Vec::new(), Vec::new());
-        BodyMotion::all(numbering, q, v, &mut motions);
-        gaps(model, &motions, &mut before);
+        let mut before = End::default();
+        before.set(model, numbering, start);
         Some(Self {
             before,
-            after: Vec::new(),
+            after: End::default(),
         })
     }
 
-    /// The contact that comes first of those which a step of size h passes over; `motions` are those of its end.
+    /// The contact that comes first of those which a step of size h to the state (q, v, v̇) passes over.
     pub fn missed<S: Scalar>(
         &mut self,
         model: &Model<S>,
-        motions: &[BodyMotion<S>],
+        numbering: &Numbering,
+        end: [&[S]; 3],
         h: f64,
     ) -> Option<Missed> {
-        gaps(model, motions, &mut self.after);
-        let pairs = self.before.iter().zip(&self.after);
-        let all = pairs.filter_map(|(before, after)| {
-            let part = deepest([before, after], h)?;
-            Some(Missed {
-                load: before.load,
-                part,
-            })
-        });
+        self.after.set(model, numbering, end);
+        let mut motions: Vec<BodyMotion<S>> = Vec::new();
+        let bodies = 0..numbering.bodies();
+        motions.extend(bodies.map(|body| self.inside(body, h, 0.5)));
+        let mut middle = Vec::new();
+        gaps(model, &motions, 0..model.loads.len(), &mut middle);
+        let all = self.before.gaps.iter().zip(&middle).zip(&self.after.gaps);
+        let all = all
+            .enumerate()
+            .filter_map(|(k, ((before, middle), after))| {
+                if may_meet([before, middle, after], h) {
+                    self.deepest(model, &mut motions, (k, before), h)
+                } else {
+                    None
+                }
+            });
         all.min_by(|a, b| a.part.total_cmp(&b.part))
     }
 
@@ -68,160 +88,168 @@ impl Touches {
     pub fn go_on(&mut self) {
         std::mem::swap(&mut self.before, &mut self.after);
     }
-}
 
-/// Intervals of a step in which the deepest place is looked for, and halvings of the best.
-const INTERVALS: usize = 16;
-const HALVINGS: usize = 50;
-
-/// The part of a step of size h at which the penetration is largest, if it begins and ends apart and touches between.
-fn deepest([before, after]: [&Gap; 2], h: f64) -> Option<f64> {
-    let onset = before.onset.max(after.onset);
-    let apart = |gap: &Gap| gap.course.penetration() < gap.onset;
-    if !(apart(before) && apart(after)) || stays_apart([before, after], h) {
-        return None;
-    }
-    let depth = |part: f64| between([&before.course, &after.course], h, part).penetration();
-    let at = |k: usize| k as f64 / INTERVALS as f64;
-    let best = (1..INTERVALS).max_by(|&a, &b| depth(at(a)).total_cmp(&depth(at(b))))?;
-    let (mut low, mut high) = (at(best - 1), at(best + 1));
-    for _ in 0..HALVINGS {
-        let third = (high - low) / 3.0;
-        if depth(low + third) < depth(high - third) {
-            low += third;
-        } else {
-            high -= third;
-        }
-    }
-    let part = 0.5 * (low + high);
-    (depth(part) > onset).then_some(part)
-}
-
-/// Whether the cubic surely stays apart: it lies in the convex hull of its control points.
-fn stays_apart([before, after]: [&Gap; 2], h: f64) -> bool {
-    match (&before.course, &after.course) {
-        (Course::Depth { value: x, rate: v }, Course::Depth { value: y, rate: w }) => {
-            (x + v * h / 3.0).max(y - w * h / 3.0) < before.onset
-        }
-        (
-            Course::Distance {
-                point: x, rate: v, ..
-            },
-            Course::Distance {
-                point: y, rate: w, ..
-            },
-        ) => {
-            let far = [v * (h / 3.0), y - w * (h / 3.0) - x, y - x];
-            let far = far.iter().fold(0.0_f64, |far, own| far.max(own.norm()));
-            // What turns may come nearer by its length.
-            let half = |course: &Course| match course {
-                Course::Distance { half, .. } => half.norm(),
-                Course::Depth { .. } => 0.0,
+    /// The motion of a body at a part s of a step of size h.
+    fn inside<S: Scalar>(&self, body: usize, h: f64, s: f64) -> BodyMotion<S> {
+        let (at, rates) = weights(h, s);
+        let ends = [&self.before.bodies[body], &self.after.bodies[body]];
+        let sum = |weights: &[[f64; 3]; 2]| {
+            let term = |e: usize, d: usize, i: usize| weights[e][d] * ends[e][d][i];
+            let one = |i: usize| -> f64 {
+                (0..2)
+                    .map(|e| (0..3).map(|d| term(e, d, i)).sum::<f64>())
+                    .sum()
             };
-            let turned = half(&before.course) + half(&after.course);
-            before.course.penetration() + far + turned < before.onset
+            std::array::from_fn::<f64, 7, _>(one)
+        };
+        let (position, p) = positions_of(&sum(&at));
+        let (velocity, pdot) = positions_of(&sum(&rates));
+        let p = rotation::unit(&p);
+        let omega = rotation::angular_velocity(&p, &pdot);
+        let orientation = p.map(S::from);
+        BodyMotion {
+            position: position.map(S::from),
+            orientation,
+            rotation: rotation::matrix(&orientation),
+            velocity: velocity.map(S::from),
+            omega: omega.map(S::from),
+            ..BodyMotion::ground()
         }
-        (Course::Depth { .. }, Course::Distance { .. })
-        | (Course::Distance { .. }, Course::Depth { .. }) => unreachable!("a gap keeps its kind"),
+    }
+
+    /// Where gap k is deepest, if it touches there.
+    fn deepest<S: Scalar>(
+        &self,
+        model: &Model<S>,
+        motions: &mut [BodyMotion<S>],
+        (k, gap): (usize, &Gap),
+        h: f64,
+    ) -> Option<Missed> {
+        let load = gap.load;
+        let first = self.before.gaps.iter().position(|own| own.load == load)?;
+        let bodies = model.loads[load].kind.bodies(&model.joints);
+        let mut found = Vec::new();
+        let mut depth = |part: f64| {
+            for body in bodies.into_iter().flatten() {
+                motions[body] = self.inside(body, h, part);
+            }
+            gaps(model, motions, load..load + 1, &mut found);
+            found[k - first].penetration
+        };
+        let at = |k: usize| k as f64 / INTERVALS as f64;
+        let depths: Vec<f64> = (1..INTERVALS).map(|k| depth(at(k))).collect();
+        let order = |&a: &usize, &b: &usize| depths[a - 1].total_cmp(&depths[b - 1]);
+        let best = (1..INTERVALS).max_by(order)?;
+        let (mut low, mut high) = (at(best - 1), at(best + 1));
+        for _ in 0..THIRDS {
+            let third = (high - low) / 3.0;
+            if depth(low + third) < depth(high - third) {
+                low += third;
+            } else {
+                high -= third;
+            }
+        }
+        let part = 0.5 * (low + high);
+        (depth(part) > gap.onset).then_some(Missed { load, part })
     }
 }
 
-/// The course at a part of a step: the cubic, and the segment between both.
-fn between([before, after]: [&Course; 2], h: f64, s: f64) -> Course {
-    let (rest, at_end) = ((1.0 - s) * (1.0 - s), s * s);
-    let weights = [
-        rest * (1.0 + 2.0 * s),
-        rest * s * h,
-        at_end * (3.0 - 2.0 * s),
-        -(at_end * (1.0 - s) * h),
-    ];
-    match (*before, *after) {
-        (Course::Depth { value: x, rate: v }, Course::Depth { value: y, rate: w }) => {
-            let [a, b, c, d] = weights;
-            Course::Depth {
-                value: x * a + v * b + y * c + w * d,
-                rate: v,
-            }
-        }
-        (
-            Course::Distance {
-                point: x,
-                rate: v,
-                half,
-                reach,
-                side,
-            },
-            Course::Distance {
-                point: y,
-                rate: w,
-                half: half_after,
-                ..
-            },
-        ) => {
-            let [a, b, c, d] = weights;
-            Course::Distance {
-                point: x * a + v * b + y * c + w * d,
-                rate: v,
-                half: half + (half_after - half) * s,
-                reach,
-                side,
-            }
-        }
-        (Course::Depth { .. }, Course::Distance { .. })
-        | (Course::Distance { .. }, Course::Depth { .. }) => unreachable!("a gap keeps its kind"),
+impl End {
+    fn set<S: Scalar>(&mut self, model: &Model<S>, numbering: &Numbering, [q, v, a]: [&[S]; 3]) {
+        self.bodies.clear();
+        self.bodies.extend((0..numbering.bodies()).map(|body| {
+            let (o, u) = (numbering.position(body), numbering.velocity(body));
+            let real = |of: &[S]| -> Vec<f64> { of.iter().map(|x| x.re()).collect() };
+            let (r, p) = positions_of(&real(&q[o..o + 7]));
+            let (velocity, omega) = velocities_of(&real(&v[u..u + 6]));
+            let (acceleration, alpha) = velocities_of(&real(&a[u..u + 6]));
+            let pdot = rotation::rates(&p, &omega);
+            let [by_alpha, by_omega] =
+                [rotation::rates(&p, &alpha), rotation::rates(&pdot, &omega)];
+            let pddot = std::array::from_fn(|i| by_alpha[i] + by_omega[i]);
+            [(r, p), (velocity, pdot), (acceleration, pddot)].map(|(x, p)| joined(&x, &p))
+        }));
+        let mut motions = Vec::new();
+        BodyMotion::all(numbering, q, v, &mut motions);
+        gaps(model, &motions, 0..model.loads.len(), &mut self.gaps);
     }
+}
+
+fn joined(x: &crate::math::Vec3<f64>, p: &[f64; 4]) -> [f64; 7] {
+    [x.x, x.y, x.z, p[0], p[1], p[2], p[3]]
+}
+
+/// Intervals of a step in which the deepest place is looked for, and steps to the best in them: to 1e-9 of the step.
+const INTERVALS: usize = 16;
+const THIRDS: usize = 45;
+
+/// The speed between two looks is at most this times the largest of the three.
+const SPEEDS_UP: f64 = 1.5;
+
+/// Whether a step that begins and ends apart may touch between: the gap is known at three places, and no place is further than a
+/// quarter of the step from one.
+fn may_meet(gaps: [&Gap; 3], h: f64) -> bool {
+    let largest = |of: &dyn Fn(&Gap) -> f64| gaps.iter().map(|gap| of(gap)).fold(0.0, f64::max);
+    let [before, _, after] = gaps;
+    let apart = |gap: &Gap| gap.penetration < gap.onset;
+    let reach = 0.25 * h * SPEEDS_UP * largest(&|gap| gap.speed);
+    let near = |gap: &&Gap| gap.penetration + reach >= gap.onset;
+    apart(before) && apart(after) && gaps.iter().any(near)
+}
+
+/// Factors of q, q̇ and q̈ at the start and at the end, in the quintic and in its rate.
+fn weights(h: f64, s: f64) -> ([[f64; 3]; 2], [[f64; 3]; 2]) {
+    let (s2, s3, s4) = (s * s, s * s * s, s * s * s * s);
+    let s5 = s4 * s;
+    let half = 0.5 * h * h;
+    let value = [
+        [
+            1.0 - 10.0 * s3 + 15.0 * s4 - 6.0 * s5,
+            h * (s - 6.0 * s3 + 8.0 * s4 - 3.0 * s5),
+            half * (s2 - 3.0 * s3 + 3.0 * s4 - s5),
+        ],
+        [
+            10.0 * s3 - 15.0 * s4 + 6.0 * s5,
+            h * (-4.0 * s3 + 7.0 * s4 - 3.0 * s5),
+            half * (s3 - 2.0 * s4 + s5),
+        ],
+    ];
+    let turn = 30.0 * (s2 - 2.0 * s3 + s4) / h;
+    let rate = [
+        [
+            -turn,
+            1.0 - 18.0 * s2 + 32.0 * s3 - 15.0 * s4,
+            0.5 * h * (2.0 * s - 9.0 * s2 + 12.0 * s3 - 5.0 * s4),
+        ],
+        [
+            turn,
+            -12.0 * s2 + 28.0 * s3 - 15.0 * s4,
+            0.5 * h * (3.0 * s2 - 8.0 * s3 + 5.0 * s4),
+        ],
+    ];
+    (value, rate)
 }
 
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::math::Vec3;
 
-    fn gap(value: f64, rate: f64) -> Gap {
-        Gap {
-            load: 0,
-            course: Course::Depth { value, rate },
-            onset: 0.0,
+    /// The quintic has the values, rates and second derivatives of s⁵ − 2 s² + 1 at both ends, and so all of it.
+    #[test]
+    fn follows_a_quintic() {
+        let h = 0.7;
+        let of = |t: f64| t.powi(5) - 2.0 * t * t + 1.0;
+        let rate = |t: f64| 5.0 * t.powi(4) - 4.0 * t;
+        let second = |t: f64| 20.0 * t.powi(3) - 4.0;
+        let ends = [0.0, h].map(|t| [of(t), rate(t), second(t)]);
+        for s in [0.0, 0.2, 0.5, 0.9, 1.0] {
+            let (value, by) = weights(h, s);
+            let sum = |w: [[f64; 3]; 2]| -> f64 {
+                let all = w.iter().flatten().zip(ends.iter().flatten());
+                all.map(|(w, x)| w * x).sum()
+            };
+            assert!((sum(value) - of(s * h)).abs() < 1e-14);
+            assert!((sum(by) - rate(s * h)).abs() < 1e-13);
         }
-    }
-
-    /// A cubic with the root of its rate inside, a parabola, and motions that come near only or move one way.
-    #[test]
-    fn finds_the_deepest_place() {
-        let cubic = |s: f64| {
-            let from = s - 0.4;
-            let value = 0.1 - from * from * (1.0 + s);
-            gap(value, (-2.0 * from * (1.0 + s) - from * from) / 0.5)
-        };
-        let part = deepest([&cubic(0.0), &cubic(1.0)], 0.5).expect("a contact");
-        assert!((part - 0.4).abs() < 1e-6, "{part}");
-        let part = deepest([&gap(-0.2, 1.0), &gap(-0.2, -1.0)], 1.0).expect("a contact");
-        assert!((part - 0.5).abs() < 1e-6, "{part}");
-        assert_eq!(deepest([&gap(-0.2, 0.6), &gap(-0.2, -0.6)], 1.0), None);
-        assert_eq!(deepest([&gap(-0.5, 0.3), &gap(-0.2, 0.3)], 1.0), None);
-    }
-
-    /// A point that flies 40 m past a post of 0.1 m, off its middle.
-    #[test]
-    fn finds_a_thin_post() {
-        let at = |x: f64, height: f64, half: f64| Gap {
-            load: 0,
-            course: Course::Distance {
-                point: Vec3::new(x, height, 0.0),
-                rate: Vec3::new(20.0, 0.0, 0.0),
-                half: Vec3::new(0.0, half, 0.0),
-                reach: 0.1,
-                side: 1.0,
-            },
-            onset: -1e-3,
-        };
-        let part = deepest([&at(-13.0, 0.05, 0.0), &at(27.0, 0.05, 0.0)], 2.0).expect("a contact");
-        assert!((part - 13.0 / 40.0).abs() < 1e-6, "{part}");
-        assert_eq!(
-            deepest([&at(-13.0, 0.2, 0.0), &at(27.0, 0.2, 0.0)], 2.0),
-            None
-        );
-        let long = [&at(-13.0, 0.2, 0.15), &at(27.0, 0.2, 0.15)];
-        assert!(deepest(long, 2.0).is_some());
     }
 }

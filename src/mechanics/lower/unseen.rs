@@ -10,7 +10,7 @@ use crate::functions::function::Part;
 use crate::functions::{Function, Instant, Scene};
 use crate::integrate::Trajectory;
 use crate::math::Scalar;
-use crate::model::{Load, LoadKind, Model};
+use crate::model::{LoadKind, Model};
 use crate::system::{Numbering, placement};
 
 /// The parts of a scene that are kept: ascending indices.
@@ -27,7 +27,10 @@ impl Seen {
     pub fn find<S: Scalar>(scene: &Scene<S>, asked: &[usize]) -> Self {
         let model = &scene.model;
         let mut parts = Groups::new(model.bodies.len());
-        let loads = model.loads.iter().map(|load| ends(load, model));
+        let loads = model
+            .loads
+            .iter()
+            .map(|load| load.kind.bodies(&model.joints));
         let joints = model
             .joints
             .iter()
@@ -67,7 +70,7 @@ impl Seen {
                     let joint = &model.joints[joint];
                     [Some(joint.body_a), joint.body_b]
                 }
-                Part::Load(&mut load) => ends(&model.loads[load], model),
+                Part::Load(&mut load) => model.loads[load].kind.bodies(&model.joints),
             });
             for body in observed.flatten() {
                 seen[body] = true;
@@ -163,34 +166,12 @@ impl Seen {
     }
 }
 
-/// The bodies that a load acts on.
-fn ends<S>(load: &Load<S>, model: &Model<S>) -> [Option<usize>; 2] {
-    match load.kind {
-        LoadKind::Force { body, .. }
-        | LoadKind::Torque { body, .. }
-        | LoadKind::Drag { body, .. } => [Some(body), None],
-        LoadKind::Distributed(ref load) => [Some(load.body), None],
-        LoadKind::Spring { body_a, body_b, .. } | LoadKind::DistanceStop { body_a, body_b, .. } => {
-            [Some(body_a), body_b]
-        }
-        LoadKind::Contact(ref own) => [Some(own.body_a), own.body_b],
-        LoadKind::TorsionSpring { joint, .. }
-        | LoadKind::Damping { joint, .. }
-        | LoadKind::BallDamping { joint, .. }
-        | LoadKind::Friction { joint, .. }
-        | LoadKind::JointStop { joint, .. } => {
-            let joint = &model.joints[joint];
-            [Some(joint.body_a), joint.body_b]
-        }
-    }
-}
-
 /// Removes the bodies without a new number, and their joints and loads. Returns the new numbers of joints
 /// and of loads.
 fn leave_out<S: Scalar>(model: &mut Model<S>, number: &[Option<usize>]) -> [Vec<Option<usize>>; 2] {
     let kept = |ends: [Option<usize>; 2]| ends.into_iter().flatten().all(|b| number[b].is_some());
     let loads: Vec<bool> = (model.loads.iter())
-        .map(|load| kept(ends(load, model)))
+        .map(|load| kept(load.kind.bodies(&model.joints)))
         .collect();
     let joints = model.joints.iter();
     let joints: Vec<bool> = joints

@@ -24,6 +24,7 @@ use super::axes::Axes;
 use super::contact::Contact;
 use super::distributed::DistributedLoad;
 use super::drive::DegreeOfFreedom;
+use super::joint::Joint;
 use super::normal_law::NormalLaw;
 use super::time_function::TimeFunction;
 use crate::math::{Scalar, Vec3, parameters};
@@ -225,6 +226,27 @@ impl<S> LoadKind<S> {
             | LoadKind::DistanceStop { .. }
             | LoadKind::Contact(_)
             | LoadKind::Distributed(_) => None,
+        }
+    }
+
+    /// The bodies that the load acts on.
+    pub fn bodies(&self, joints: &[Joint<S>]) -> [Option<usize>; 2] {
+        match self {
+            LoadKind::Force { body, .. }
+            | LoadKind::Torque { body, .. }
+            | LoadKind::Drag { body, .. } => [Some(*body), None],
+            LoadKind::Distributed(load) => [Some(load.body), None],
+            LoadKind::Spring { body_a, body_b, .. }
+            | LoadKind::DistanceStop { body_a, body_b, .. } => [Some(*body_a), *body_b],
+            LoadKind::Contact(own) => [Some(own.body_a), own.body_b],
+            LoadKind::TorsionSpring { joint, .. }
+            | LoadKind::Damping { joint, .. }
+            | LoadKind::BallDamping { joint, .. }
+            | LoadKind::Friction { joint, .. }
+            | LoadKind::JointStop { joint, .. } => {
+                let joint = &joints[*joint];
+                [Some(joint.body_a), joint.body_b]
+            }
         }
     }
 

@@ -92,6 +92,8 @@ impl Checker<'_> {
         }
         if let Some(until) = &simulation.until {
             self.instant("/simulation/until/measure", &until.measure);
+            let pointer = "/simulation/until/reaches";
+            self.level(pointer, &until.measure, &until.reaches);
         }
         if let (Some(_), Some(tolerance)) = (simulation.steps, simulation.tolerance) {
             let expected = "either \"steps\" or \"tolerance\"";

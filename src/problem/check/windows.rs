@@ -5,6 +5,7 @@ use crate::finding::Finding;
 use crate::model::JointKind;
 use crate::placement::GROUND;
 use crate::pointer::{advice, join};
+use crate::quantity::Quantity;
 use crate::schema::combined::PowerOf;
 use crate::schema::functions::{Instant, OfMotion};
 use crate::schema::mechanics::Point;
@@ -118,13 +119,31 @@ impl Checker<'_> {
 
     fn reach(&mut self, pointer: &str, reach: &Reach) {
         self.instant(&join(pointer, "when"), &reach.when);
-        let found = match reach.values().len() {
-            0 => "no value to reach",
-            1 => return,
+        let found = match &reach.values()[..] {
+            [] => "no value to reach",
+            [(value, rises)] => {
+                let key = match rises {
+                    None => "reaches",
+                    Some(true) => "rises_to",
+                    Some(false) => "falls_to",
+                };
+                return self.level(&join(pointer, key), &reach.when, value);
+            }
             _ => "more than one value to reach",
         };
         let expected = "one of \"reaches\", \"rises_to\" and \"falls_to\"";
         self.fault(Finding::new(pointer, found, expected).of_key());
+    }
+
+    /// Checks a value that a quantity reaches. What does not touch has a force of exactly zero, so no instant is the one at which
+    /// it becomes zero.
+    pub(super) fn level(&mut self, pointer: &str, of: &Instant, value: &Quantity) {
+        let of_contact = matches!(of, Instant::ContactForce(_) | Instant::ContactFriction(_));
+        if of_contact && value.value == 0.0 {
+            let found = "0, the force as long as nothing touches";
+            let expected = "a level above 0, such as a hundredth of the largest force";
+            self.fault(Finding::new(pointer, found, expected));
+        }
     }
 
     /// Checks a time of the motion.

@@ -134,7 +134,7 @@ pub fn march<S: SolveScalar>(
         }
         _ => None,
     };
-    let mut touches = Touches::open(model, numbering, (&from.q, &from.v));
+    let mut touches = Touches::open(model, numbering, [&from.q, &from.v, &from.a]);
     while let Some(width) = controller.next(run.grid.reached()) {
         let begin = run.grid.reached();
         let h = run.grid.size(duration, width, begin);
@@ -155,8 +155,8 @@ pub fn march<S: SolveScalar>(
                 }
                 stepper.finish(&mut to, end_time)?;
                 let looked = touches.as_mut();
-                if let Some(missed) =
-                    looked.and_then(|t| t.missed(model, &stepper.field.motions, h.re()))
+                let ends = [&to.q[..], &to.v, &to.a];
+                if let Some(missed) = looked.and_then(|t| t.missed(model, numbering, ends, h.re()))
                 {
                     return Err(StepFailure::Missed(missed));
                 }

@@ -189,7 +189,11 @@ fn march_until<S: SolveScalar>(
         BodyMotion::all(numbering, &past.from.q, &past.from.v, &mut motions);
         ledger.enter(model, &motions, 0.0);
     }
-    let mut touches = Touches::open(model, numbering, (&past.from.q, &past.from.v));
+    let mut touches = Touches::open(
+        model,
+        numbering,
+        [&past.from.q, &past.from.v, &past.from.vdot],
+    );
     while let Some(width) = controller.next(run.grid.reached()) {
         if let Some(stretch) = &stretch
             && stretch.is_over(run.counts.implicit_work())
@@ -228,8 +232,8 @@ fn march_until<S: SolveScalar>(
         }
         if let Some(touches) = &mut touches {
             let last = &solver.stages[count - 1];
-            BodyMotion::all(numbering, &last.q, &last.v, &mut motions);
-            match touches.missed(model, &motions, h.re()) {
+            let ends = [&last.q[..], &last.v, &last.vdot];
+            match touches.missed(model, numbering, ends, h.re()) {
                 None => {}
                 Some(missed) if controller.give_up_over(missed.part) => {
                     let (step, time) = at;

@@ -13,7 +13,6 @@
 //! The normal force has no power along the tangent, so δ̇ follows from v at z whatever the place of z along n. The pull-backs
 //! go from the cotangents of δ, n, v, u and z to the bodies.
 
-use super::course::Course;
 use super::normal_law;
 use super::pull::{Pulled, pull_point};
 use super::{Acting, stop};
@@ -148,27 +147,10 @@ impl<S: Scalar> State<S> {
     }
 }
 
-/// What δ follows from, for the control of steps.
-pub(super) fn course<S: Scalar>(contact: &Contact<S>, at: &Acting<S>) -> Course {
-    let real = |v: Vec3<S>| v.map(Scalar::re);
-    let (radius, half) = match &contact.surface {
-        Surface::Plane { .. } => {
-            let now = state(contact, at);
-            return Course::Depth {
-                value: now.penetration.re(),
-                rate: -now.normal.dot(&now.velocity).re(),
-            };
-        }
-        Surface::Sphere { radius } => (radius.re(), Vec3::zeros()),
-        Surface::Capsule { half, radius } => (radius.re(), real(at.b.motion.rotation * half)),
-    };
-    Course::Distance {
-        point: real(at.a.point() - at.b.point()),
-        rate: real(at.a.point_jet().rate - at.b.point_jet().rate),
-        half,
-        reach: contact.radius.re() + radius,
-        side: 1.0,
-    }
+/// The speed of the point of A as body B sees it: no distance from what is fixed on B changes faster.
+pub(super) fn speed<S: Scalar>(at: &Acting<S>) -> f64 {
+    let seen = relative(at, &at.a.point());
+    seen.map(Scalar::re).norm()
 }
 
 /// δ.

@@ -1,18 +1,20 @@
 //! How near the stops and contacts of a scene are, for the control of steps.
 
-use super::course::Course;
-use super::{contact, for_each_load, stop};
+use super::{contact, for_loads, stop};
 use crate::math::Scalar;
 use crate::model::{LoadKind, Model};
 use crate::system::bodies::BodyMotion;
+use std::ops::Range;
 
 /// A place where a load may begin to press.
 #[derive(Clone, Copy, Debug)]
 pub struct Gap {
     /// The load.
     pub load: usize,
-    /// What the penetration follows from.
-    pub course: Course,
+    /// Penetration, negative before the contact \[m or rad\].
+    pub penetration: f64,
+    /// Bound of its rate.
+    pub speed: f64,
     /// Penetration at which the force sets in \[m or rad\].
     pub onset: f64,
 }
@@ -25,22 +27,29 @@ pub fn may_touch<S>(kind: &LoadKind<S>) -> bool {
     stop::of(kind).is_some() || matches!(kind, LoadKind::Contact(_))
 }
 
-/// Lists the gaps of all loads that may touch, always in the same order.
-pub fn gaps<S: Scalar>(model: &Model<S>, motions: &[BodyMotion<S>], out: &mut Vec<Gap>) {
+/// Lists the gaps of those of the loads `of` that may touch, always in the same order.
+pub fn gaps<S: Scalar>(
+    model: &Model<S>,
+    motions: &[BodyMotion<S>],
+    of: Range<usize>,
+    out: &mut Vec<Gap>,
+) {
     out.clear();
-    for_each_load(model, motions, |load, kind, at| {
-        let mut add = |course: Course, width: S| {
+    for_loads(model, motions, of, |load, kind, at| {
+        let mut add = |penetration: f64, speed: f64, width: S| {
             out.push(Gap {
                 load,
-                course,
+                penetration,
+                speed,
                 onset: -FELT * width.re(),
             });
         };
         if let Some(stop) = stop::of(kind) {
-            stop.each_course(at, |course| add(course, stop.width()));
+            stop.each_gap(at, |depth, speed| add(depth, speed, stop.width()));
         }
         if let LoadKind::Contact(own) = kind {
-            add(contact::course(own, at), own.law.width);
+            let depth = contact::penetration(own, at).re();
+            add(depth, contact::speed(at), own.law.width);
         }
     });
 }

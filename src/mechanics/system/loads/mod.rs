@@ -7,7 +7,6 @@
 //! flexible body act on its coordinates too: `distributed.rs` has all of theirs.
 
 mod contact;
-pub mod course;
 mod distributed;
 mod drag;
 pub mod gaps;
@@ -31,6 +30,7 @@ use crate::math::{Scalar, Vec3};
 use crate::model::{Axes, DegreeOfFreedom, JointFrame, LoadKind, Model, Surface};
 use parameters::give_to_parameters;
 use pull::Pulled;
+use std::ops::Range;
 
 /// Both bodies of a load, with its points or frames.
 pub(super) struct Acting<'a, S> {
@@ -45,9 +45,19 @@ pub(super) struct Acting<'a, S> {
 fn for_each_load<S: Scalar>(
     model: &Model<S>,
     motions: &[BodyMotion<S>],
+    visit: impl FnMut(usize, &LoadKind<S>, &Acting<S>),
+) {
+    for_loads(model, motions, 0..model.loads.len(), visit);
+}
+
+/// The same for some of the loads.
+fn for_loads<S: Scalar>(
+    model: &Model<S>,
+    motions: &[BodyMotion<S>],
+    wanted: Range<usize>,
     mut visit: impl FnMut(usize, &LoadKind<S>, &Acting<S>),
 ) {
-    if model.loads.is_empty() {
+    if wanted.is_empty() {
         return;
     }
     let (ground, nowhere) = (BodyMotion::ground(), JointFrame::zero());
@@ -66,7 +76,8 @@ fn for_each_load<S: Scalar>(
         let joint = &model.joints[joint];
         acting((joint.body_a, joint.frame_a), (joint.body_b, joint.frame_b))
     };
-    for (i, load) in model.loads.iter().enumerate() {
+    for i in wanted {
+        let load = &model.loads[i];
         let acting = match &load.kind {
             LoadKind::Force { body, point, .. } | LoadKind::Drag { body, point, .. } => {
                 acting((*body, at(point)), (None, nowhere))

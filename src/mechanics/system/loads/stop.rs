@@ -8,11 +8,10 @@
 //!
 //! with N of [`super::normal_law`].
 
-use super::Acting;
-use super::course::Course;
 use super::normal_law::{self, NormalForce};
 use super::power::{SLIDE, angle, apart, turn_rate};
 use super::pull::{Pulled, hold_virtual, pull_angle, pull_rate, pull_row, pull_turn};
+use super::{Acting, contact};
 use crate::math::{Scalar, Vec3};
 use crate::model::{DegreeOfFreedom, LoadKind, NormalLaw};
 use crate::system::constraint;
@@ -170,27 +169,18 @@ impl<S: Scalar> Stop<'_, S> {
         self.law.width
     }
 
-    /// Calls `visit` with what the penetration of each limit follows from.
-    pub(super) fn each_course(&self, at: &Acting<S>, mut visit: impl FnMut(Course)) {
-        let real = |v: Vec3<S>| v.map(Scalar::re);
+    /// Calls `visit(penetration, speed)` for each limit, for the control of steps. The penetration changes no faster than by
+    /// the speed.
+    pub(super) fn each_gap(&self, at: &Acting<S>, mut visit: impl FnMut(f64, f64)) {
+        let x = self.coordinate.value(at);
+        let speed = match self.coordinate {
+            Coordinate::Angle | Coordinate::Slide => self.coordinate.rate(at).re().abs(),
+            Coordinate::Distance => contact::speed(at),
+        };
         for (limit, side) in self.limits.iter().zip(SIDES) {
-            let Some(limit) = limit else { continue };
-            visit(match self.coordinate {
-                Coordinate::Angle | Coordinate::Slide => {
-                    let (x, rate) = (self.coordinate.value(at), self.coordinate.rate(at));
-                    Course::Depth {
-                        value: side * (limit.re() - x.re()),
-                        rate: -(side * rate.re()),
-                    }
-                }
-                Coordinate::Distance => Course::Distance {
-                    point: real(at.a.point() - at.b.point()),
-                    rate: real(at.a.point_jet().rate - at.b.point_jet().rate),
-                    half: Vec3::zeros(),
-                    reach: limit.re(),
-                    side,
-                },
-            });
+            if let Some(limit) = limit {
+                visit(side * (limit.re() - x.re()), speed);
+            }
         }
     }
 
