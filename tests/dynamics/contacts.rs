@@ -446,3 +446,51 @@ fn the_tip_of_a_beam_touches() {
     assert!(values(&document)[0] > 0.01);
     gradients_are_exact(&parsed(&document), &json!("a beam"));
 }
+
+/// A rod of 1 m that turns freely about its centre by 15.57 rad/s, whose tip meets a thin post in its way: with any tolerance the
+/// momentum of the rod is the impulse of the contact. The steps before it turn the rod by 1 rad and more.
+#[test]
+fn a_turning_rod_meets_a_thin_post() {
+    for k in 0..24 {
+        let angle = 0.3 + 0.17 * f64::from(k);
+        let (sin, cos) = angle.sin_cos();
+        let tolerance = 10.0_f64.powi(-(3 + k % 7));
+        let file = json!({
+            "version": 1, "name": "rod", "gravity": [0, 0, 0],
+            "bodies": {"rod": {"shape": {"box": {"size": [1, 0.1, 0.05]}}, "mass": 1.5,
+                "velocity": {"angular": [0, 0, 15.57]}, "points": {"tip": [0.5, 0, 0]}}},
+            "loads": {"post": {"contact": {
+                "between": ["rod", "ground"], "at": {"a": "tip", "b": [0.5 * cos, 0.5 * sin, 0]},
+                "surface": {"sphere": {"radius": 0.005}}, "stiffness": 4e5, "width": 4e-4}}},
+            "simulation": {"duration": 0.35, "tolerance": tolerance},
+            "functions": {
+                "x": {"final": {"momentum": {"direction": [1, 0, 0]}}},
+                "y": {"final": {"momentum": {"direction": [0, 1, 0]}}},
+                "impulse": {"integral": {"contact_force": {"load": "post"}}}}
+        });
+        let found = values(&file);
+        let (momentum, impulse) = (found[0].hypot(found[1]), found[2]);
+        assert!(impulse > 1.0, "{angle} {tolerance}: {found:?}");
+        assert!(
+            (momentum - impulse).abs() < 0.05 * impulse,
+            "{angle} {tolerance}: {found:?}"
+        );
+    }
+}
+
+/// What is at the axis of a capsule at the start has no normal there.
+#[test]
+fn a_start_on_the_axis_of_a_capsule_is_told() {
+    let file = json!({
+        "version": 1, "name": "ball", "gravity": [0, 0, 0],
+        "bodies": {"ball": point([0.7, 0.0, 0.0], [0.0, 1.0, 0.0])},
+        "loads": {"bar": {"contact": {"between": ["ball", "ground"], "at": [[0.7, 0, 0], [0, 0, 0]],
+            "surface": {"capsule": {"half": [1, 0, 0], "radius": 0.2}}, "stiffness": 1e5, "width": 1e-3}}},
+        "simulation": {"duration": 0.1},
+        "functions": {"up": component("velocity", "ball", [0.0, 1.0, 0.0])}
+    });
+    let text = serde_json::to_string_pretty(&file).expect("text");
+    let faults = flexbody_problem::Problem::parse(&text, "ball.json", &[]);
+    let faults = faults.err().expect("a fault").to_string();
+    assert!(faults.contains("ends at the same place"), "{faults}");
+}

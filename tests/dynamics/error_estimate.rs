@@ -601,3 +601,38 @@ fn integrals_of_round_off_take_no_more_samples_than_others() {
         }
     }
 }
+
+/// Halves of steps around an impact pass over the next one, as impacts move with the steps. The error then follows from a motion by a
+/// smaller tolerance.
+#[test]
+fn impacts_between_halved_steps_leave_an_estimate() {
+    let file = json!({
+        "version": 1, "name": "rod", "gravity": [0, 0, 0],
+        "bodies": {"A": {"shape": {"box": {"size": [0.867406097194261, 0.1, 0.05]}}, "mass": 2.5927206477292253,
+            "points": {"a": [-0.4337030485971305, 0, 0], "b": [0.4337030485971305, 0, 0]},
+            "place": {"put": "a", "at": [0, 0, 0], "turn": {"axis": [0, 0, 1], "angle": -2.9576061130776115}}}},
+        "joints": {"h": {"revolute": {"between": ["A", "ground"], "at": "A.a", "axis": [0, 0, 1],
+            "start": {"turn": {"rate": -47.082136777048355}}}}},
+        "loads": {"c": {"contact": {"between": ["A", "ground"],
+            "at": {"a": "b", "b": [0.3433227468425023, -0.7946644033027829, 0]},
+            "surface": {"sphere": {"radius": 0.02218391272245027}},
+            "stiffness": 35171.74710928287, "width": 0.0021543660272590297}}},
+        "functions": {"x": {"final": {"position": {"body": "A", "point": "b", "direction": [1, 0, 0]}}}},
+        "simulation": {"duration": 0.29662229400870643, "tolerance": 9.241403070177526e-06}
+    });
+    let value = |tolerance: f64| {
+        let mut file = file.clone();
+        file["simulation"]["tolerance"] = json!(tolerance);
+        let problem = problem(&file);
+        let at = Evaluated::new(&problem, &problem.start()).expect("runs");
+        let error = estimate(&problem, &at, &[0], false).expect("an estimate");
+        (at.function(0).value, error[0].value.error)
+    };
+    let (x, error) = value(9.241403070177526e-06);
+    let (exact, _) = value(1e-11);
+    let ratio = error / (x - exact).abs();
+    assert!(
+        (TRUSTED.0..TRUSTED.1).contains(&ratio),
+        "{x} {exact} {error}"
+    );
+}

@@ -429,3 +429,45 @@ fn what_cannot_turn_is_told() {
         &["speeds of a machine that does not turn"],
     );
 }
+
+/// A rigid rotor on a ball joint, held by springs in rotational symmetry, has the critical speed √(k / (I_t − I_p)) about any
+/// axis. Its free spin belongs to none.
+#[test]
+fn the_critical_speed_is_the_same_about_oblique_axes() {
+    // Springs of zero tension from the end of the rotor at 0.3 m to a circle of 0.5 m about it.
+    let (mass, along, across, count) = (2.0, 0.02, 0.03, 4);
+    let stiffness = 0.5 * f64::from(count) * 1000.0 * 0.3 * 0.3;
+    let expected = (stiffness / (across + mass * 0.25 - along)).sqrt();
+    let mut file = json!({
+        "version": 1, "name": "rotor", "analysis": "modes", "gravity": [0, 0, 0],
+        "turning": {"axis": [1, 0, 0], "speed": 20},
+        "functions": {"c": {"critical_speed": {"number": 1}}}
+    });
+    for k in 0..12_u32 {
+        let axis = nalgebra::Vector3::new(0.3 + f64::from(k), 1.0 - 0.7 * f64::from(k * k), 0.9);
+        let turn = match k {
+            0 => nalgebra::Rotation3::identity(),
+            _ => nalgebra::Rotation3::new(axis.normalize() * (0.4 * f64::from(k))),
+        };
+        let at = |x: [f64; 3]| {
+            let x = turn * nalgebra::Vector3::from(x);
+            json!([x.x, x.y, x.z])
+        };
+        let rows: Vec<Vec<f64>> = (0..3)
+            .map(|i| (0..3).map(|j| turn[(i, j)]).collect())
+            .collect();
+        file["turning"]["axis"] = at([1.0, 0.0, 0.0]);
+        file["bodies"] = json!({"d": {
+            "mass": mass, "inertia": {"xx": along, "yy": across, "zz": across},
+            "place": {"at": at([0.5, 0.0, 0.0]), "turn": {"matrix": rows}}}});
+        file["joints"] = json!({"s": {"spherical": {"between": ["d", "ground"], "at": [0, 0, 0]}}});
+        file["loads"] = json!({});
+        for s in 0..count {
+            let (sin, cos) = (2.0 * PI * f64::from(s) / f64::from(count)).sin_cos();
+            file["loads"][format!("s{s}")] = json!({"spring": {
+                "between": ["d", "ground"], "at": {"a": [-0.2, 0, 0], "b": at([0.3, 0.5 * cos, 0.5 * sin])},
+                "rest_length": 0.5, "stiffness": 1000}});
+        }
+        assert_near(&values(&file), &[expected], 1e-9);
+    }
+}

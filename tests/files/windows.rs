@@ -404,3 +404,38 @@ fn a_window_that_never_starts_is_a_failed_design() {
         .position(|name| name == "after");
     assert!(at.function(f.expect("a function")).value.is_nan());
 }
+
+/// The force of a contact is zero over all the time before it, so no instant is the one at which it falls to zero.
+#[test]
+fn the_level_zero_of_a_contact_is_refused() {
+    let window = json!({"value": {"at": {"when": {"contact_force": {"load": "floor"}}, "falls_to": 0},
+                                  "of": {"velocity": {"body": "ball", "direction": [0, 1, 0]}}}});
+    let file = |functions: Value, until: Value| {
+        let mut simulation = json!({"duration": 1});
+        if !until.is_null() {
+            simulation["until"] =
+                json!({"measure": {"contact_force": {"load": "floor"}}, "reaches": until});
+        }
+        json!({
+            "version": 1, "name": "ball",
+            "bodies": {"ball": {"shape": "point", "mass": 1, "place": {"at": [0, 0.1, 0]}}},
+            "loads": {"floor": {"contact": {"between": ["ball", "ground"], "at": [[0, 0.1, 0], [0, 0, 0]],
+                "surface": {"plane": {"normal": [0, 1, 0]}}, "stiffness": 1e4, "width": 1e-4}}},
+            "simulation": simulation, "functions": functions
+        })
+    };
+    let faults = |file: Value| {
+        let text = serde_json::to_string_pretty(&file).expect("text");
+        Problem::parse(&text, "ball.json", &[])
+            .err()
+            .map(|own| own.to_string())
+    };
+    let none = Value::Null;
+    let found = faults(file(json!({"up": window}), none.clone())).expect("a fault");
+    assert!(found.contains("/functions/up/value/at/falls_to"), "{found}");
+    let found = faults(file(json!({}), json!(0))).expect("a fault");
+    assert!(found.contains("/simulation/until/reaches"), "{found}");
+    let mut above = window.clone();
+    above["value"]["at"]["falls_to"] = json!(0.01);
+    assert_eq!(faults(file(json!({"up": above}), none)), None);
+}

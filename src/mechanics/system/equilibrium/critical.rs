@@ -21,6 +21,7 @@ use super::krylov::lowest;
 use super::pencil::{At, Between, Matrices, contracted};
 use super::rest::{FLOOR, FREE};
 use super::turning::Turning;
+use super::unresisted::unresisted;
 use super::{Held, KnownStarts, Sought, in_scalar, with_solution};
 use crate::math::{Complex64, Dual, Parameters, Scalar};
 use crate::model::Model;
@@ -172,11 +173,15 @@ fn at_equilibrium(
         }
         let [forward, backward] = [1.0, -1.0].map(|speed| of(speed).stiffness.values);
         let parts = forward.iter().zip(&backward);
-        for ((mass, (a, b)), k) in (matrices.mass.values.iter_mut()).zip(parts).zip(&still) {
-            *mass = k - 0.5 * (a + b);
-        }
-        let allowed = At::rest(layout, solver.model, found, None).freedom();
+        let turned = parts.zip(&still);
+        let turned: Vec<f64> = turned.map(|((a, b), k)| k - 0.5 * (a + b)).collect();
         let free = (FREE * found.rate).max(ABOVE * least);
+        let allowed = At::rest(layout, solver.model, found, None).freedom();
+        let rates = (found.rate, free);
+        let left_out = unresisted(&matrices, &turned, rates, allowed)?;
+        let allowed = allowed - left_out.len();
+        matrices.left_out = left_out;
+        matrices.mass.values = turned;
         let scales = (found.rate.sqrt(), free.sqrt());
         let mut count = 2 * number + 2;
         loop {

@@ -157,7 +157,7 @@ impl Solver<'_> {
         let spin = turning.map_or(0.0, |own| own.speed * own.speed);
         let mut without_joints = self.rate(&residual);
         // Gravity is a load of every machine, and rotation one of those that turn.
-        if turning.is_none()
+        if spin == 0.0
             && self.model.gravity.norm() == 0.0
             && let Some(rate) = self.rate_of_stiffness(factors, (&x, without_joints))?
         {

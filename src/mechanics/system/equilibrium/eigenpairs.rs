@@ -113,6 +113,7 @@ impl Shifted<'_> {
             .zip(&heavy)
             .for_each(|(a, b)| *a = -(*a + b));
         self.factors.solve(&mut right);
+        self.matrices.leave_out(&mut right);
         // The multipliers are those of the solution, and have no part in products.
         [right, y.clone()]
     }
@@ -121,6 +122,7 @@ impl Shifted<'_> {
     fn left(&mut self, [a, b]: &[Vector; 2]) -> ([Vector; 2], Vector) {
         let mut l = a.clone();
         self.factors.solve_transposed(&mut l);
+        self.matrices.leave_out(&mut l);
         let mut next = self.slope(&l, true);
         next.iter_mut().zip(b).for_each(|(x, b)| *x = b - *x);
         let mut last = product(&self.matrices.mass, &l, true);

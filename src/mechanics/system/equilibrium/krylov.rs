@@ -68,6 +68,7 @@ impl Space<'_> {
         right.iter_mut().for_each(|x| *x = -*x);
         self.factors.solve(&mut right);
         right.truncate(n);
+        self.matrices.leave_out(&mut right);
         right.extend(y[..n].iter().map(|y| y / self.shift));
         right
     }

@@ -35,6 +35,7 @@ mod ritz;
 mod sameness;
 mod stability;
 mod turning;
+mod unresisted;
 mod unsteady;
 mod whirl;
 

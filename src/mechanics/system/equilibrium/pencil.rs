@@ -178,6 +178,8 @@ pub(super) struct Matrices {
     pub stiffness: SparseMatrix<f64>,
     pub damping: SparseMatrix<f64>,
     pub mass: SparseMatrix<f64>,
+    /// Motions that are left out of all products, and their products with the inertia, of which each has 1 with its motion.
+    pub left_out: Vec<[Vec<f64>; 2]>,
     pattern: Pattern,
 }
 
@@ -203,6 +205,7 @@ impl Matrices {
             stiffness: of(1.0, 0.0, 0.0),
             damping: of(0.0, if damped { 1.0 } else { 0.0 }, 0.0),
             mass: of(0.0, 0.0, 1.0),
+            left_out: Vec::new(),
             pattern,
         }
     }
@@ -210,6 +213,15 @@ impl Matrices {
     /// Number of unknowns and multipliers.
     pub(super) fn order(&self) -> usize {
         self.pattern.order()
+    }
+
+    /// Removes the motions that are left out from y.
+    pub(super) fn leave_out<S: Scalar>(&self, y: &mut [S]) {
+        for [motion, heavy] in &self.left_out {
+            let products = heavy.iter().zip(y.iter());
+            let along = products.fold(S::zero(), |sum, (m, y)| sum + *y * *m);
+            (y.iter_mut().zip(motion)).for_each(|(y, own)| *y -= along * *own);
+        }
     }
 
     /// K + s D + s² M.

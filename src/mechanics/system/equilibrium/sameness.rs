@@ -103,8 +103,10 @@ impl Solver<'_> {
         there.solve(&mut off);
         here.solve(&mut whole);
         let size = dot(&whole[..n], &whole[..n]).sqrt();
-        if dot(&off[..n], &off[..n]).sqrt() > SAME * size {
-            return Err(self.not_alike(&off[..n], "another stiffness, damping or joint"));
+        let off_by = dot(&off[..n], &off[..n]).sqrt() / size;
+        if off_by > SAME {
+            let what = format!("another stiffness, damping or joint, by {off_by:.0e} of it");
+            return Err(self.not_alike(&off[..n], &what));
         }
         Ok(())
     }

@@ -153,6 +153,12 @@ pub(super) fn speed<S: Scalar>(at: &Acting<S>) -> f64 {
     seen.map(Scalar::re).norm()
 }
 
+/// Whether the centre of A is where a curved surface has no normal: in the centre of a sphere or on the axis of a capsule.
+pub(super) fn meets(contact: &Contact<f64>, at: &Acting<f64>) -> bool {
+    let curved = !matches!(contact.surface, Surface::Plane { .. });
+    curved && state(contact, at).distance <= f64::EPSILON * contact.radius.max(at.a.point().norm())
+}
+
 /// δ.
 pub(super) fn penetration<S: Scalar>(contact: &Contact<S>, at: &Acting<S>) -> S {
     state(contact, at).penetration

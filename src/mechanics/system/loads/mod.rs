@@ -27,7 +27,7 @@ use super::side::JointSide;
 use super::turns;
 use crate::linalg::Emit;
 use crate::math::{Scalar, Vec3};
-use crate::model::{Axes, DegreeOfFreedom, JointFrame, LoadKind, Model, Surface};
+use crate::model::{Axes, DegreeOfFreedom, JointFrame, LoadKind, Model};
 use parameters::give_to_parameters;
 use pull::Pulled;
 use std::ops::Range;
@@ -321,12 +321,12 @@ pub fn without_length(model: &Model<f64>) -> Option<&str> {
         {
             found = found.or(Some(i));
         }
-        let needs_length = match kind {
-            LoadKind::DistanceStop { .. } => true,
-            LoadKind::Contact(own) => !matches!(own.surface, Surface::Plane { .. }),
+        let meets = match kind {
+            LoadKind::DistanceStop { .. } => power::apart(at).length == 0.0,
+            LoadKind::Contact(own) => contact::meets(own, at),
             _ => false,
         };
-        if needs_length && power::apart(at).length == 0.0 {
+        if meets {
             found = found.or(Some(i));
         }
     });
