@@ -402,6 +402,7 @@ fn told(model: &Model<f64>, why: FallbackReason) -> String {
     match why {
         FallbackReason::Loops => "loops of joints reach far and overlap".into(),
         FallbackReason::Flexible => "a body is flexible".into(),
+        FallbackReason::Coupled => "joints are coupled".into(),
         FallbackReason::Body(body) => {
             let body = &model.bodies[body];
             let principal = body.inertia.symmetric_eigenvalues();

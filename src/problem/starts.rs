@@ -84,16 +84,13 @@ impl<S: Scalar> Starts<S> {
         if given.is_empty() {
             return None;
         }
-        let ends: Vec<_> = (model.joints.iter())
-            .map(|joint| (joint.body_a, joint.body_b))
-            .collect();
         let moving = |body: &crate::schema::mechanics::Body| {
             body.velocity.is_some() || document.initial_velocity.is_some()
         };
         let joints = document.joints.values();
         Some(Self {
             given,
-            blocks: Blocks::new(model.bodies.len(), &ends),
+            blocks: Blocks::of(model),
             closed: joints.map(|joint| closes(document, joint)).collect(),
             moving: document.bodies.values().map(moving).collect(),
         })

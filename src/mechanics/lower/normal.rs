@@ -44,7 +44,8 @@ pub(super) fn candidates(model: &Model<f64>) -> Vec<Vec3<f64>> {
         | JointKind::Universal
         | JointKind::Rod
         | JointKind::Weld
-        | JointKind::Attachment => false,
+        | JointKind::Attachment
+        | JointKind::Coupled(_) => false,
     };
     let joints = model.joints.iter().filter(turns);
     let mut axes: Vec<(usize, Vec3<f64>)> = Vec::new();

@@ -57,7 +57,8 @@ pub(super) fn holds<S: Scalar>(
                 | JointKind::Cylindrical
                 | JointKind::Universal
                 | JointKind::Weld
-                | JointKind::Attachment => {
+                | JointKind::Attachment
+                | JointKind::Coupled(_) => {
                     vanishes(None, &|| format!("joint \"{name}\" turns it"));
                 }
             }

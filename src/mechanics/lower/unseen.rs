@@ -73,8 +73,8 @@ impl Seen {
                 seen[body] = true;
             }
         }
-        // The duration depends on no body, but a scene needs one. No joint joins carriers.
-        if !seen.contains(&true) || !model.flexible.is_empty() {
+        // The duration depends on no body, but a scene needs one. No joint joins carriers, and a coupling joins its joints.
+        if !seen.contains(&true) || !model.flexible.is_empty() || model.is_coupled() {
             seen.fill(true);
         }
         let all = 0..model.bodies.len();

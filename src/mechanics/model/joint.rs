@@ -132,6 +132,9 @@ pub enum JointKind {
     Weld,
     /// Body B is the interface of a point of the flexible body whose frame is body A: 6 rows.
     Attachment,
+    /// A rotation or displacement of another joint that follows the coordinates of a coupling: 1 row (see
+    /// [`super::coupling`]).
+    Coupled(DegreeOfFreedom),
 }
 
 use ConstraintRow::{Coincident, Distance, Perpendicular, Sliding};
@@ -181,6 +184,8 @@ impl JointKind {
                 Perpendicular { a: 1, b: 2 },
                 Perpendicular { a: 2, b: 0 },
             ],
+            JointKind::Coupled(DegreeOfFreedom::Rotation) => &[Perpendicular { a: 0, b: 1 }],
+            JointKind::Coupled(DegreeOfFreedom::Translation) => &[Sliding { a: 2 }],
         }
     }
 
@@ -194,7 +199,8 @@ impl JointKind {
             | JointKind::Universal
             | JointKind::Rod
             | JointKind::Weld
-            | JointKind::Attachment => &[],
+            | JointKind::Attachment
+            | JointKind::Coupled(_) => &[],
         }
     }
 
@@ -202,8 +208,14 @@ impl JointKind {
     pub fn common_axes(self) -> &'static [usize] {
         match self {
             JointKind::Spherical | JointKind::Universal | JointKind::Rod => &[],
-            JointKind::Revolute | JointKind::Planar | JointKind::Cylindrical => &[2],
-            JointKind::Prismatic | JointKind::Weld | JointKind::Attachment => &[0, 1, 2],
+            JointKind::Revolute
+            | JointKind::Planar
+            | JointKind::Cylindrical
+            | JointKind::Coupled(DegreeOfFreedom::Translation) => &[2],
+            JointKind::Coupled(DegreeOfFreedom::Rotation)
+            | JointKind::Prismatic
+            | JointKind::Weld
+            | JointKind::Attachment => &[0, 1, 2],
         }
     }
 
@@ -219,6 +231,7 @@ impl JointKind {
             JointKind::Rod => "rod",
             JointKind::Weld => "weld",
             JointKind::Attachment => "attachment",
+            JointKind::Coupled(_) => "coupled",
         }
     }
 }
@@ -279,7 +292,8 @@ pub struct Joint<S> {
     /// Trivially satisfied rows: they hold in all motions that the bodies' mobility admits, and are
     /// not imposed.
     pub trivial_rows: Vec<ConstraintRow>,
-    /// How the frame on body A moves with its elastic coordinates; of attachments only.
+    /// How a frame moves with coordinates: that on body A with those of a flexible body, of attachments; that on
+    /// body B with those of a coupling, of coupled joints.
     pub modes: Option<Modes<S>>,
 }
 
@@ -293,6 +307,11 @@ pub struct Fit {
 }
 
 impl<S> Joint<S> {
+    /// Whether it is a motion of another joint that follows the coordinates of a coupling.
+    pub fn is_coupled(&self) -> bool {
+        matches!(self.kind, JointKind::Coupled(_))
+    }
+
     /// The rows of the kind and of the drives.
     pub fn all_rows(&self) -> impl Iterator<Item = ConstraintRow> + Clone + '_ {
         let driven = self.drives.iter().map(|drive| drive.dof.driven_row());
