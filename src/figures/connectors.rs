@@ -89,10 +89,9 @@ pub(super) fn joined(
                 ConnectorKind::Hinge
             }
             // Welded bodies, and bodies that slide in a plane, have no common point.
-            JointKind::Weld
-            | JointKind::Planar
-            | JointKind::Attachment
-            | JointKind::Coupled(_) => continue,
+            JointKind::Weld | JointKind::Planar | JointKind::Attachment | JointKind::Coupled(_) => {
+                continue;
+            }
         };
         held.extend(both.iter().filter_map(|(body, point)| {
             let follows = kind != ConnectorKind::Slider;

@@ -1,6 +1,7 @@
 //! The map from a design to a scene, analytic in the design.
 
 use super::aggregates::rho_of;
+use super::couplings;
 use super::flexible::{FlexibleBodies, HeldPlace};
 use super::loads::stopped;
 use super::mass::mass_properties;
@@ -12,9 +13,10 @@ use crate::functions::{Function, Scene, TerminalEvent};
 use crate::math::rotation::matrix;
 use crate::math::scalar::lift3;
 use crate::math::{Scalar, Vec3};
-use crate::model::{DegreeOfFreedom, Mobility, Model, RigidBody};
+use crate::model::{CoupledMotion, DegreeOfFreedom, Mobility, Model, RigidBody};
 use crate::quantity::{Vector, vector};
 use crate::schema::Document;
+use crate::schema::couplings::Coupling;
 use crate::schema::flexible::Start;
 use crate::schema::functions::OfMotion;
 use crate::schema::loads::Load;
@@ -69,10 +71,15 @@ pub fn with_places<S: Scalar>(
         frames: (model.joints.iter())
             .map(|joint| joint.frame_a.axes)
             .collect(),
+        coupled: Vec::new(),
         vibrations: Vibrations::default(),
         followed: followed(document),
         x,
     };
+    let missed = |model: &Model<S>, coupling: &Coupling, own: &[CoupledMotion<S>]| {
+        couplings::miss(&builder, model, coupling, own)
+    };
+    builder.coupled = couplings::couple(document, &assembly, &mut model, missed);
     count_turns(document, &builder, &mut model);
     if let (Some(sought), None) = (document.sought(), &unstarted) {
         let request = Request {
@@ -254,7 +261,18 @@ fn start<S: Scalar>(
     let mut moved = model.clone();
     let found = starts.place(&mut moved).and_then(|()| {
         give(&mut moved);
-        start_rates::set(&starts, &mut moved)
+        if document.couplings.is_empty() {
+            return start_rates::set(&starts, &mut moved);
+        }
+        // Rates of joints move those that are coupled with them.
+        let mut coupled = moved.clone();
+        couplings::couple(document, assembly, &mut coupled, |_, _, _| S::zero());
+        start_rates::set(&starts.coupled(&coupled), &mut coupled)?;
+        for (body, found) in moved.bodies.iter_mut().zip(&coupled.bodies) {
+            body.velocity = found.velocity;
+            body.angular_velocity = found.angular_velocity;
+        }
+        Ok(())
     });
     match found {
         Ok(()) => *model = moved,

@@ -146,9 +146,8 @@ impl<S: Scalar> Model<S> {
 
     /// Whether a body stands for a point of a flexible body.
     pub fn is_interface(&self, body: usize) -> bool {
-        let of = |joint: &Joint<S>| {
-            joint.kind == JointKind::Attachment && joint.body_b == Some(body)
-        };
+        let of =
+            |joint: &Joint<S>| joint.kind == JointKind::Attachment && joint.body_b == Some(body);
         self.joints.iter().any(of)
     }
 

@@ -213,7 +213,13 @@ pub fn pull_driven_frame(
     own: &mut Joint<f64>,
 ) -> f64 {
     let course = prescribed(joint, time);
-    let by = pull_moved_frame(&joint.frame_b, &course, by_frame, by_motion, &mut own.frame_b);
+    let by = pull_moved_frame(
+        &joint.frame_b,
+        &course,
+        by_frame,
+        by_motion,
+        &mut own.frame_b,
+    );
     let mut by_time = 0.0;
     for (drive, own) in joint.drives.iter().zip(&mut own.drives) {
         let [value, rate, acceleration, _] = match drive.dof {
@@ -236,7 +242,13 @@ pub fn pull_followed_frame(
     own: &mut Joint<f64>,
 ) {
     let course = followed(modes, motions);
-    let by = pull_moved_frame(&joint.frame_b, &course, by_frame, by_motion, &mut own.frame_b);
+    let by = pull_moved_frame(
+        &joint.frame_b,
+        &course,
+        by_frame,
+        by_motion,
+        &mut own.frame_b,
+    );
     let along = |x: f64| Vec3::new(0.0, 0.0, x);
     let parts = std::array::from_fn(|i| (along(by.slide[i]), along(by.turn[i])));
     attachment::pull_coordinates(modes, (numbering, motions), &parts, states, own);
