@@ -151,15 +151,15 @@ pub enum CoupledMotion {
     Slide,
 }
 
-/// How a coupling acts on a joint.
+/// How a coupling acts on a body.
 #[derive(Clone, Debug, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 pub struct OfCoupling {
     /// Name of the coupling.
     pub coupling: String,
-    /// One of its joints, default its first.
-    pub joint: Option<String>,
-    /// The motion of this joint, default its first in the coupling.
+    /// One of its wheels, its rack, or a joint of a screw or relation; default the first.
+    pub on: Option<String>,
+    /// The motion of a joint, default its first in the coupling.
     pub motion: Option<CoupledMotion>,
 }
 

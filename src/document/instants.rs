@@ -73,8 +73,8 @@ pub enum Instant {
     JointForce(JointReaction),
     /// Component of the moment by which a joint acts on a body [N m], that of its drive included.
     JointMoment(JointReaction),
-    /// Torque [N m] or force \[N\] of a coupling about or along the axis of one of its joints, on the joint's first body (the
-    /// one that is not ground).
+    /// Torque of a coupling on one of its wheels about its axis [N m], or force on its rack along the slide \[N\]; of a screw
+    /// or relation on the first body of a joint (the one that is not ground).
     CouplingReaction(OfCoupling),
     /// Distance of the points of a spring \[m\].
     SpringLength(OfSpring),

@@ -89,7 +89,11 @@ pub(super) fn joined(
                 ConnectorKind::Hinge
             }
             // Welded bodies, and bodies that slide in a plane, have no common point.
-            JointKind::Weld | JointKind::Planar | JointKind::Attachment | JointKind::Coupled(_) => {
+            JointKind::Weld
+            | JointKind::Free
+            | JointKind::Planar
+            | JointKind::Attachment
+            | JointKind::Coupled(_) => {
                 continue;
             }
         };

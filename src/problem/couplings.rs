@@ -1,7 +1,7 @@
 //! Makes the couplings of a model from those of a file.
 //!
-//! The angle of a wheel against its carrier is a sum of angles of the joints on the way from the carrier to it. Wheels
-//! with the unit axes n_1, n_2 and the angles φ_1, φ_2 about these against one carrier move so that
+//! Wheels with the unit axes n_1, n_2 and the angles φ_1, φ_2 about these against one carrier, and a rack with the
+//! displacement s against it, move so that
 //!
 //! ```text
 //! gear, crossed belt     z_1 φ_1 + z_2 (n_1·n_2) φ_2 = const       z: teeth, radii, or 1 and the ratio
@@ -16,12 +16,13 @@
 use super::placement::{Assembly, GROUND};
 use super::quantities::FunctionBuilder;
 use crate::functions::Rotation;
+use crate::math::rotation::matrix;
 use crate::math::scalar::{length, unit};
-use crate::math::{Scalar, Vec3};
-use crate::model::{CoupledMotion, DegreeOfFreedom, Model};
+use crate::math::{Mat3, Scalar, Vec3};
+use crate::model::{CoupledMotion, DegreeOfFreedom, Joint as ModelJoint, JointFrame, Model};
 use crate::schema::Document;
 use crate::schema::couplings::{
-    Bevel, CoupledMotion as Motion, Coupling, OfCoupling, RackAndPinion, Wheels,
+    Bevel, CoupledMotion as Motion, Coupling, OfCoupling, RackAndPinion, Relation, Term, Wheels,
 };
 use crate::schema::joints::Joint;
 use crate::schema::mechanics::Location;
@@ -101,14 +102,18 @@ pub(super) fn carrier<'a>(
     both.next().filter(|_| both.next().is_none())
 }
 
-/// A wheel: its axis, a point of it and its angle, from those of its carrier.
+/// A wheel on its carrier.
 pub(super) struct Wheel<S> {
     /// n, ground axes as placed.
     pub axis: Vec3<S>,
-    /// o, ground axes as placed \[m\].
+    /// o, a point of the axis, ground axes as placed \[m\].
     pub point: Vec3<S>,
-    /// The axes on the way, with the joint and whether it turns as its motion does.
-    passed: Vec<(Passed, Vec3<S>)>,
+    /// The joints on the way from the carrier.
+    way: Vec<Passed>,
+    /// The one among them whose axis it is.
+    hinge: Passed,
+    /// The largest sine of the angle between its axis and those on the way.
+    pub skew: f64,
 }
 
 /// Whether a joint turns a wheel.
@@ -132,40 +137,83 @@ impl<S: Scalar> Wheel<S> {
         let way = way(document, carrier, body)?;
         let joint = |passed: &Passed| &document.joints[passed.joint];
         let axis = |passed: &Passed| Some(unit(assembly.axis(joint(passed).axes()[0]?)));
-        let turned = way.iter().filter(|passed| turns(joint(passed)));
-        let passed: Vec<(Passed, Vec3<S>)> = turned
-            .filter_map(|passed| Some((*passed, axis(passed)?)))
-            .collect();
-        let &(last, axis) = passed.last()?;
+        let turning = || way.iter().filter(|passed| turns(joint(passed)));
+        let hinge = *turning().next_back()?;
+        let own = axis(&hinge)?;
+        let sine = |axis: Vec3<S>| axis.cross(&own).map(|x| x.re()).norm();
         Some(Self {
-            axis,
-            point: point(document, assembly, last.joint),
-            passed,
+            axis: own,
+            point: point(document, assembly, hinge.joint),
+            skew: turning().filter_map(axis).map(sine).fold(0.0, f64::max),
+            way,
+            hinge,
         })
     }
 
-    /// The largest sine of the angle between its axis and those on the way.
-    pub(super) fn skew(&self) -> f64 {
-        let sines = self.passed.iter();
-        let sines = sines.map(|(_, axis)| axis.cross(&self.axis).map(|x| x.re()).norm());
-        sines.fold(0.0, f64::max)
-    }
-
-    /// The motions whose sum with their factors is `factor` times its angle.
-    fn motions(&self, factor: S) -> impl Iterator<Item = CoupledMotion<S>> + '_ {
-        self.passed.iter().map(move |(passed, axis)| {
-            let same = axis.dot(&self.axis).re().signum();
-            CoupledMotion {
-                joint: passed.joint,
-                dof: DegreeOfFreedom::Rotation,
-                factor: factor * (passed.sign * same),
-            }
-        })
+    /// Its rotation against its carrier.
+    fn motion(&self, model: &Model<S>, name: &str, factor: S) -> CoupledMotion<S> {
+        CoupledMotion {
+            joint: against_carrier(model, &self.way, self.hinge, name),
+            dof: DegreeOfFreedom::Rotation,
+            factor,
+        }
     }
 
     /// t = n × (P − o).
     pub(super) fn path(&self, at: &Vec3<S>) -> Vec3<S> {
         self.axis.cross(&(at - self.point))
+    }
+}
+
+/// The frames of a body and its carrier at the end and the start of the way between them, with the axis of a joint on it. The
+/// bodies are those that the joints of the model hold: sections, on flexible bodies.
+fn against_carrier<S: Scalar>(
+    model: &Model<S>,
+    way: &[Passed],
+    hinge: Passed,
+    name: &str,
+) -> ModelJoint<S> {
+    let far = |passed: Passed| {
+        let joint = &model.joints[passed.joint];
+        match passed.sign > 0.0 {
+            true => (Some(joint.body_a), joint.frame_a),
+            false => (joint.body_b, joint.frame_b),
+        }
+    };
+    let near = |passed: Passed| {
+        far(Passed {
+            sign: -passed.sign,
+            ..passed
+        })
+        .0
+    };
+    let pose = |body: Option<usize>| match body.map(|body| &model.bodies[body]) {
+        Some(body) => (body.position, matrix(&body.orientation)),
+        None => (Vec3::zeros(), Mat3::identity()),
+    };
+    let (turning, frame) = far(hinge);
+    let (place, turn) = pose(turning);
+    let (point, axes) = (
+        place + turn * frame.point,
+        frame.axes.map(|axis| turn * axis),
+    );
+    let on = |body: Option<usize>| {
+        let (place, turn) = pose(body);
+        JointFrame {
+            point: turn.tr_mul(&(point - place)),
+            axes: axes.map(|axis| turn.tr_mul(&axis)),
+            length: S::zero(),
+        }
+    };
+    let [first, last] = [way.first(), way.last()].map(|own| *own.unwrap_or(&hinge));
+    let (body_a, body_b) = (far(last).0, near(first));
+    ModelJoint {
+        name: name.to_owned(),
+        body_a: body_a.expect("a coupled body is not ground, which is checked"),
+        body_b,
+        frame_a: on(body_a),
+        frame_b: on(body_b),
+        ..model.joints[hinge.joint].clone()
     }
 }
 
@@ -218,157 +266,160 @@ pub(super) fn bevel_paths<S: Scalar>(
     Some(wheels.map(|wheel| wheel.path(&at)))
 }
 
-/// The pinion of a rack, the rack's joint with its sign, the unit direction of its motion, and the path of the pinion's
-/// teeth where they meet.
+/// A rack on its carrier with its pinion.
+pub(super) struct Rack<S> {
+    pub pinion: Wheel<S>,
+    /// The joints on the way from the carrier to the rack, and the one along which it slides.
+    way: Vec<Passed>,
+    slide: Passed,
+    /// u, ground axes as placed.
+    pub along: Vec3<S>,
+    /// The path t of the pinion's teeth where they meet.
+    pub path: Vec3<S>,
+}
+
+/// The rack of a coupling; `None` if joints do not hold it so.
 pub(super) fn rack<S: Scalar>(
     document: &Document,
     assembly: &Assembly<S>,
     own: &RackAndPinion,
-) -> Option<(Wheel<S>, Passed, Vec3<S>, Vec3<S>)> {
+) -> Option<Rack<S>> {
     let carrier = carrier(document, own.carrier.as_ref(), [&own.rack, &own.pinion])?;
     let pinion = Wheel::of(document, assembly, carrier, &own.pinion)?;
     let way = way(document, carrier, &own.rack)?;
-    let slide = way
-        .into_iter()
-        .find(|passed| slides(&document.joints[passed.joint]))?;
+    let mut all = way.iter();
+    let slide = *all.find(|passed| slides(&document.joints[passed.joint]))?;
     let axis = document.joints[slide.joint].axes()[0]?;
-    let along = unit(assembly.axis(axis)) * S::from(slide.sign);
-    let path = pinion.path(&place(assembly, &own.at));
-    Some((pinion, slide, along, path))
+    Some(Rack {
+        along: unit(assembly.axis(axis)),
+        path: pinion.path(&place(assembly, &own.at)),
+        pinion,
+        way,
+        slide,
+    })
 }
 
-/// The motions of a coupling of a checked document, with their factors; none if its bodies are not joined so.
-pub(super) fn motions<S: Scalar>(
+/// The motions of a coupling of a checked document with their factors.
+fn motions<S: Scalar>(
     document: &Document,
     assembly: &Assembly<S>,
+    model: &Model<S>,
     coupling: &Coupling,
-) -> Vec<CoupledMotion<S>> {
-    let found = match coupling {
-        Coupling::Gear(own) => of_wheels(document, assembly, coupling, own.inner),
-        Coupling::Belt(own) => of_wheels(document, assembly, coupling, !own.crossed),
-        Coupling::Bevel(own) => of_bevel(document, assembly, (coupling, own)),
-        Coupling::RackAndPinion(own) => of_rack(document, assembly, own),
+) -> Option<Vec<CoupledMotion<S>>> {
+    let joint = |name: &String| Some(model.joints[document.joints.get_index_of(name)?].clone());
+    let motion = |name: &String, dof, factor| {
+        let joint = joint(name)?;
+        Some(CoupledMotion { joint, dof, factor })
+    };
+    let (turn, slide) = (DegreeOfFreedom::Rotation, DegreeOfFreedom::Translation);
+    let wheels = coupling.wheels();
+    if let Some(wheels) = &wheels {
+        let [a, b] = pair(document, assembly, wheels)?;
+        let [first, second] = factors(assembly, (coupling, wheels), [&a, &b])?;
+        let [of_a, of_b] = wheels.bodies;
+        let both = [(a, of_a, first), (b, of_b, second)];
+        return Some(
+            both.map(|(own, name, factor)| own.motion(model, name, factor))
+                .into(),
+        );
+    }
+    match coupling {
+        // They have wheels.
+        Coupling::Gear(_) | Coupling::Bevel(_) | Coupling::Belt(_) => None,
+        Coupling::RackAndPinion(own) => {
+            let found = rack(document, assembly, own)?;
+            let speed = found.path.dot(&found.along);
+            let speed = match &own.radius {
+                Some(radius) => assembly.quantity(radius) * speed.re().signum(),
+                None => speed,
+            };
+            let slides = CoupledMotion {
+                joint: against_carrier(model, &found.way, found.slide, &own.rack),
+                dof: slide,
+                factor: S::one(),
+            };
+            Some(vec![
+                found.pinion.motion(model, &own.pinion, -speed),
+                slides,
+            ])
+        }
         Coupling::Screw(own) => {
-            let joint = document.joints.get_index_of(&own.joint);
-            joint.map(|joint| {
-                let motion = |dof, factor| CoupledMotion { joint, dof, factor };
-                let lead = assembly.quantity(&own.lead) / TAU;
-                vec![
-                    motion(DegreeOfFreedom::Rotation, -lead),
-                    motion(DegreeOfFreedom::Translation, S::one()),
-                ]
-            })
+            let lead = assembly.quantity(&own.lead) / TAU;
+            let both = [(turn, -lead), (slide, S::one())];
+            both.into_iter()
+                .map(|(dof, factor)| motion(&own.joint, dof, factor))
+                .collect()
         }
         Coupling::Relation(own) => {
-            let motion = |term: &crate::schema::couplings::Term| {
+            let of = |term: &Term| {
                 let (dof, factor) = match (&term.turn, &term.slide) {
-                    (Some(turn), _) => (DegreeOfFreedom::Rotation, turn),
-                    (None, slide) => (DegreeOfFreedom::Translation, slide.as_ref()?),
+                    (Some(factor), _) => (turn, factor),
+                    (None, factor) => (slide, factor.as_ref()?),
                 };
-                Some(CoupledMotion {
-                    joint: document.joints.get_index_of(&term.joint)?,
-                    dof,
-                    factor: assembly.quantity(factor),
-                })
+                motion(&term.joint, dof, assembly.quantity(factor))
             };
-            own.terms.iter().map(motion).collect()
+            own.terms.iter().map(of).collect()
         }
-    };
-    merged(found.unwrap_or_default())
-}
-
-fn of_wheels<S: Scalar>(
-    document: &Document,
-    assembly: &Assembly<S>,
-    coupling: &Coupling,
-    same_way: bool,
-) -> Option<Vec<CoupledMotion<S>>> {
-    let wheels = coupling.wheels()?;
-    let [first, second] = sizes(assembly, &wheels)?;
-    let [a, b] = pair(document, assembly, &wheels)?;
-    let parallel = a.axis.dot(&b.axis).re().signum();
-    let sense = if same_way { -parallel } else { parallel };
-    let all = a.motions(first).chain(b.motions(second * sense));
-    Some(all.collect())
-}
-
-fn of_bevel<S: Scalar>(
-    document: &Document,
-    assembly: &Assembly<S>,
-    (coupling, own): (&Coupling, &Bevel),
-) -> Option<Vec<CoupledMotion<S>>> {
-    let wheels = coupling.wheels()?;
-    let [a, b] = pair(document, assembly, &wheels)?;
-    let at = place(assembly, &own.at);
-    let (first, second) = (a.path(&at), b.path(&at));
-    let along = unit(first);
-    let across = second.dot(&along);
-    let [first, second] = match sizes(assembly, &wheels) {
-        Some([first, second]) => [first, -second * across.re().signum()],
-        None => [length(&first), -across],
-    };
-    Some(a.motions(first).chain(b.motions(second)).collect())
-}
-
-fn of_rack<S: Scalar>(
-    document: &Document,
-    assembly: &Assembly<S>,
-    own: &RackAndPinion,
-) -> Option<Vec<CoupledMotion<S>>> {
-    let (pinion, slide, along, path) = rack(document, assembly, own)?;
-    let speed = path.dot(&along);
-    let speed = match &own.radius {
-        Some(radius) => assembly.quantity(radius) * speed.re().signum(),
-        None => speed,
-    };
-    let slides = CoupledMotion {
-        joint: slide.joint,
-        dof: DegreeOfFreedom::Translation,
-        factor: S::from(slide.sign),
-    };
-    Some(pinion.motions(-speed).chain([slides]).collect())
-}
-
-/// The motions with each once, in the order of their last terms.
-fn merged<S: Scalar>(motions: Vec<CoupledMotion<S>>) -> Vec<CoupledMotion<S>> {
-    let mut all: Vec<CoupledMotion<S>> = Vec::new();
-    for mut motion in motions {
-        let same = |own: &CoupledMotion<S>| (own.joint, own.dof) == (motion.joint, motion.dof);
-        if let Some(at) = all.iter().position(same) {
-            motion.factor += all.remove(at).factor;
-        }
-        all.push(motion);
     }
-    all
+}
+
+/// The factors of the angles of two wheels.
+fn factors<S: Scalar>(
+    assembly: &Assembly<S>,
+    (coupling, wheels): (&Coupling, &Wheels),
+    [a, b]: [&Wheel<S>; 2],
+) -> Option<[S; 2]> {
+    let given = sizes(assembly, wheels);
+    let same_way = match coupling {
+        Coupling::Gear(own) => own.inner,
+        Coupling::Belt(own) => !own.crossed,
+        Coupling::Bevel(own) => {
+            let at = place(assembly, &own.at);
+            let (first, second) = (a.path(&at), b.path(&at));
+            let across = second.dot(&unit(first));
+            let [first, second] = given.unwrap_or([length(&first), across]);
+            let sense = if across.re() > 0.0 { -1.0 } else { 1.0 };
+            let size = if second.re() < 0.0 { -second } else { second };
+            return Some([first, size * sense]);
+        }
+        Coupling::RackAndPinion(_) | Coupling::Screw(_) | Coupling::Relation(_) => return None,
+    };
+    let [first, second] = given?;
+    let parallel = a.axis.dot(&b.axis).re().signum();
+    Some([first, second * if same_way { -parallel } else { parallel }])
 }
 
 /// A motion of a coupling in a model.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Followed<S> {
-    pub motion: CoupledMotion<S>,
     /// The joint by which it follows.
     pub joint: usize,
+    pub dof: DegreeOfFreedom,
     /// Its axis on the first body of the joint.
     pub axis: Vec3<S>,
 }
 
-/// Couples the joints of a model as the bodies are placed, up to a `miss` of each coupling: their motions.
+/// Couples the bodies of a model as they are placed, up to a `miss` of each relation: their motions.
 pub(super) fn couple<S: Scalar>(
     document: &Document,
     assembly: &Assembly<S>,
     model: &mut Model<S>,
-    miss: impl Fn(&Model<S>, &Coupling, &[CoupledMotion<S>]) -> S,
+    miss: impl Fn(&Model<S>, &Relation) -> S,
 ) -> Vec<Vec<Followed<S>>> {
     let one = |(name, coupling): (&String, &Coupling)| {
-        let motions = motions(document, assembly, coupling);
-        let miss = miss(model, coupling, &motions);
-        let joints = model.couple(name, &motions, miss);
-        let followed = |(motion, joint): (CoupledMotion<S>, usize)| Followed {
-            motion,
-            joint,
-            axis: model.joints[joint].frame_a.axes[2],
+        let motions = motions(document, assembly, model, coupling);
+        let motions = motions.expect("a coupling has its motions, which is checked");
+        let miss = match coupling {
+            Coupling::Relation(relation) => miss(model, relation),
+            _ => S::zero(),
         };
-        motions.into_iter().zip(joints).map(followed).collect()
+        let joints = model.couple(name, &motions, miss);
+        let followed = |(motion, joint): (&CoupledMotion<S>, usize)| Followed {
+            joint,
+            dof: motion.dof,
+            axis: motion.joint.frame_a.axes[2],
+        };
+        motions.iter().zip(joints).map(followed).collect()
     };
     document.couplings.iter().map(one).collect()
 }
@@ -377,12 +428,8 @@ pub(super) fn couple<S: Scalar>(
 pub(super) fn miss<S: Scalar>(
     builder: &FunctionBuilder<S>,
     model: &Model<S>,
-    coupling: &Coupling,
-    motions: &[CoupledMotion<S>],
+    relation: &Relation,
 ) -> S {
-    let Coupling::Relation(relation) = coupling else {
-        return S::zero();
-    };
     let Some(constant) = &relation.constant else {
         return S::zero();
     };
@@ -390,86 +437,52 @@ pub(super) fn miss<S: Scalar>(
     let (q, v) = guess(model);
     let mut bodies = Vec::new();
     BodyMotion::all(&numbering, &q, &v, &mut bodies);
-    let place = |motion: &CoupledMotion<S>| match motion.dof {
-        DegreeOfFreedom::Rotation => {
-            let (name, _) = builder
-                .document
-                .joints
-                .get_index(motion.joint)
-                .expect("joints are checked");
-            let rotation: Rotation<S> = builder.joint_angle(name);
+    let placed = |term: &Term| match (&term.turn, &term.slide) {
+        (Some(factor), _) => {
+            let rotation: Rotation<S> = builder.joint_angle(&term.joint);
             let twist = rotation.angle(&numbering, &q);
-            twist + rotation.first_turns(twist.re())
+            let angle = twist + rotation.first_turns(twist.re());
+            builder.assembly.quantity(factor) * angle
         }
-        DegreeOfFreedom::Translation => measures::slide(&model.joints[motion.joint], &bodies),
+        (None, Some(factor)) => {
+            let joint = &model.joints[builder.joint(&term.joint)];
+            builder.assembly.quantity(factor) * measures::slide(joint, &bodies)
+        }
+        (None, None) => S::zero(),
     };
-    let placed = motions.iter();
-    let placed = placed.fold(S::zero(), |sum, own| sum + own.factor * place(own));
+    let terms = relation.terms.iter();
+    let placed = terms.fold(S::zero(), |sum, term| sum + placed(term));
     builder.assembly.quantity(constant) - placed
 }
 
-/// The place among the motions of a coupling of the one that a function observes; `None` if it has no such motion.
-pub(super) fn observed(
-    document: &Document,
-    motions: &[(usize, DegreeOfFreedom)],
-    of: &OfCoupling,
-) -> Option<usize> {
-    let joint = match &of.joint {
-        Some(name) => Some(document.joints.get_index_of(name)?),
-        None => None,
-    };
-    let dof = of.motion.map(|own| match own {
-        Motion::Turn => DegreeOfFreedom::Rotation,
-        Motion::Slide => DegreeOfFreedom::Translation,
-    });
-    motions.iter().position(|own| {
-        joint.is_none_or(|joint| own.0 == joint) && dof.is_none_or(|dof| own.1 == dof)
-    })
+/// The motions of a coupling, in the order of the model: the wheel, rack or joint of each, and how it moves.
+pub(super) fn moved(coupling: &Coupling) -> Vec<(&String, Motion)> {
+    let wheels = coupling.wheels();
+    let wheels = wheels
+        .iter()
+        .flat_map(|own| own.bodies)
+        .map(|own| (own, Motion::Turn));
+    match coupling {
+        Coupling::Gear(_) | Coupling::Bevel(_) | Coupling::Belt(_) => wheels.collect(),
+        Coupling::RackAndPinion(own) => {
+            vec![(&own.pinion, Motion::Turn), (&own.rack, Motion::Slide)]
+        }
+        Coupling::Screw(own) => vec![(&own.joint, Motion::Turn), (&own.joint, Motion::Slide)],
+        Coupling::Relation(own) => {
+            let motion = |term: &Term| match term.turn {
+                Some(_) => Motion::Turn,
+                None => Motion::Slide,
+            };
+            let terms = own.terms.iter();
+            terms.map(|term| (&term.joint, motion(term))).collect()
+        }
+    }
 }
 
-/// The joints that a coupling moves, with how, in the order of [`motions`]; none if its bodies are not joined so.
-pub(super) fn moved(document: &Document, coupling: &Coupling) -> Vec<(usize, DegreeOfFreedom)> {
-    let joint = |name: &String| document.joints.get_index_of(name);
-    let on_way = |carrier: Option<&str>, body: &str, fits: fn(&Joint) -> bool, dof| {
-        let way = carrier.and_then(|carrier| way(document, carrier, body));
-        let all = way.unwrap_or_default().into_iter().map(|own| own.joint);
-        let all = all.filter(|&joint| fits(&document.joints[joint]));
-        all.map(|joint| (joint, dof)).collect::<Vec<_>>()
-    };
-    let (turn, slide) = (DegreeOfFreedom::Rotation, DegreeOfFreedom::Translation);
-    let found: Vec<(usize, DegreeOfFreedom)> = match coupling {
-        Coupling::Gear(_) | Coupling::Bevel(_) | Coupling::Belt(_) => {
-            let wheels = coupling.wheels();
-            let wheels = wheels.iter().flat_map(|own| {
-                let bodies = own.bodies.each_ref().map(String::as_str);
-                let carrier = carrier(document, own.carrier, bodies);
-                bodies.map(|body| on_way(carrier, body, turns, turn))
-            });
-            wheels.flatten().collect()
-        }
-        Coupling::RackAndPinion(own) => {
-            let carrier = carrier(document, own.carrier.as_ref(), [&own.rack, &own.pinion]);
-            let mut all = on_way(carrier, &own.pinion, turns, turn);
-            all.extend(on_way(carrier, &own.rack, slides, slide));
-            all
-        }
-        Coupling::Screw(own) => {
-            let joint = joint(&own.joint);
-            joint.map_or_else(Vec::new, |joint| vec![(joint, turn), (joint, slide)])
-        }
-        Coupling::Relation(own) => {
-            let terms = own.terms.iter();
-            let dof = |turns: bool| if turns { turn } else { slide };
-            terms
-                .filter_map(|term| Some((joint(&term.joint)?, dof(term.turn.is_some()))))
-                .collect()
-        }
-    };
-    let last = |&(at, own): &(usize, &(usize, DegreeOfFreedom))| !found[at + 1..].contains(own);
-    found
-        .iter()
-        .enumerate()
-        .filter(last)
-        .map(|(_, own)| *own)
-        .collect()
+/// The place among the motions of a coupling of the one that a function observes; `None` if it has no such motion.
+pub(super) fn observed(coupling: &Coupling, of: &OfCoupling) -> Option<usize> {
+    moved(coupling).iter().position(|(name, motion)| {
+        let is_named = of.on.as_ref().is_none_or(|on| on == *name);
+        is_named && of.motion.is_none_or(|own| own == *motion)
+    })
 }

@@ -8,8 +8,9 @@ use super::memory;
 use super::placement::Assembly;
 use super::pointer::join;
 use crate::math::{Dual, Vec3};
-use crate::model::{Joint, JointKind, RigidBody};
+use crate::model::{Joint as ModelJoint, JointKind, RigidBody};
 use crate::schema::couplings::Coupling;
+use crate::schema::joints::Joint;
 use crate::system::failure::AssemblyFailure;
 use crate::system::placement::length_scale;
 use crate::system::{Numbering, dead_points, initial, loads, rank, redundancy};
@@ -23,7 +24,7 @@ pub(super) fn too_many(problem: &Problem) -> Option<Finding> {
     let count = problem.variables.len();
     let model = problem.unlowered_scene::<f64>(&problem.start()).model;
     let scene = (model.bodies.len() * (size_of::<RigidBody<Dual>>() + 64))
-        + model.joints.len() * (size_of::<Joint<Dual>>() + 64);
+        + model.joints.len() * (size_of::<ModelJoint<Dual>>() + 64);
     let needed = count * (scene + count * OF_PAIR);
     let available = memory::available().filter(|available| needed > *available)?;
     let size = |bytes: usize| format!("{:.1} GB", bytes as f64 / 1e9);
@@ -67,11 +68,18 @@ pub(super) fn oblique(problem: &Problem) -> Option<Finding> {
     let start = problem.start_numbers();
     let assembly = Assembly::new(&problem.written, &problem.order, &start);
     problem.written.joints.iter().find_map(|(name, joint)| {
-        let [Some(axis), Some(cross)] = joint.axes() else {
+        let [axis, Some(cross)] = joint.axes() else {
             return None;
         };
-        let [axis, cross] = [axis, cross].map(|axis| assembly.axis(axis).normalize());
+        let axis = axis.map_or(Vec3::z(), |axis| assembly.axis(axis).normalize());
+        let cross = assembly.axis(cross).normalize();
         let cosine = axis.dot(&cross);
+        if let Joint::Free(_) = joint {
+            let pointer = join(&join(&join("/joints", name), "free"), "cross");
+            let expected = "an axis across \"axis\"";
+            let found = || Finding::new(pointer, "an axis along the other", expected);
+            return (axis.cross(&cross).norm() <= PERPENDICULAR).then(found);
+        }
         (cosine.abs() > PERPENDICULAR).then(|| {
             let pointer = join(&join(&join("/joints", name), "universal"), "cross");
             let degrees = cosine.acos().to_degrees();
@@ -99,7 +107,7 @@ pub(super) fn miscoupled(problem: &Problem) -> Option<Finding> {
         let turned = |wheel: &Wheel<f64>| {
             let expected = "a body that turns about parallel axes on its carrier";
             let found = "axes that are not parallel on the way to the carrier";
-            (wheel.skew() > ALIKE).then(|| Finding::new(join(&pointer, key), found, expected))
+            (wheel.skew > ALIKE).then(|| Finding::new(join(&pointer, key), found, expected))
         };
         if let Some(finding) = pair.iter().flatten().find_map(turned) {
             return Some(finding);
@@ -121,8 +129,9 @@ pub(super) fn miscoupled(problem: &Problem) -> Option<Finding> {
                 }
             }
             (Coupling::RackAndPinion(own), _) => {
-                let (pinion, _, along, path) = couplings::rack(document, &assembly, own)?;
-                if let Some(finding) = turned(&pinion) {
+                let rack = couplings::rack(document, &assembly, own)?;
+                let (along, path) = (rack.along, rack.path);
+                if let Some(finding) = turned(&rack.pinion) {
                     return Some(finding);
                 }
                 let expected =
@@ -158,7 +167,7 @@ pub(super) fn driven_twice(problem: &Problem) -> Option<Finding> {
     }
     let undriven = |names: &[&str]| {
         let mut model = model.clone();
-        let named = |joint: &&mut Joint<f64>| names.contains(&joint.name.as_str());
+        let named = |joint: &&mut ModelJoint<f64>| names.contains(&joint.name.as_str());
         model
             .joints
             .iter_mut()

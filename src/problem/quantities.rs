@@ -41,7 +41,7 @@ pub(super) struct FunctionBuilder<'a, S> {
     pub ends: Vec<(usize, Option<usize>)>,
     /// The axes of the joints on the first of them.
     pub frames: Vec<[Vec3<S>; 3]>,
-    /// By coupling: its motions, each with the joint by which it follows and the axis of this on its first body.
+    /// By coupling: its motions.
     pub coupled: Vec<Vec<Followed<S>>>,
     /// Vibrations about rest.
     pub vibrations: Vibrations<S>,
@@ -395,18 +395,15 @@ impl<S: Scalar> FunctionBuilder<'_, S> {
     }
 
     fn coupling_reaction(&self, of: &OfCoupling) -> Instant<S> {
-        let coupling = self.document.couplings.get_index_of(&of.coupling);
-        let own = &self.coupled[coupling.expect("a function is of a coupling, which is checked")];
-        let motions: Vec<_> = own
-            .iter()
-            .map(|own| (own.motion.joint, own.motion.dof))
-            .collect();
-        let at = observed(self.document, &motions, of);
-        let own = &own[at.expect("a function is of a motion of a coupling, which is checked")];
+        let coupling = self.document.couplings.get_full(&of.coupling);
+        let (k, _, coupling) = coupling.expect("a function is of a coupling, which is checked");
+        let at = observed(coupling, of);
+        let own = &self.coupled[k]
+            [at.expect("a function is of a motion of a coupling, which is checked")];
         Instant::Reaction(Wrench {
             joint: own.joint,
             on: End::A,
-            part: match own.motion.dof {
+            part: match own.dof {
                 DegreeOfFreedom::Rotation => WrenchPart::Moment,
                 DegreeOfFreedom::Translation => WrenchPart::Force,
             },

@@ -13,10 +13,10 @@ use crate::functions::{Function, Scene, TerminalEvent};
 use crate::math::rotation::matrix;
 use crate::math::scalar::lift3;
 use crate::math::{Scalar, Vec3};
-use crate::model::{CoupledMotion, DegreeOfFreedom, Mobility, Model, RigidBody};
+use crate::model::{DegreeOfFreedom, Mobility, Model, RigidBody};
 use crate::quantity::{Vector, vector};
 use crate::schema::Document;
-use crate::schema::couplings::Coupling;
+use crate::schema::couplings::Relation;
 use crate::schema::flexible::Start;
 use crate::schema::functions::OfMotion;
 use crate::schema::loads::Load;
@@ -76,9 +76,7 @@ pub fn with_places<S: Scalar>(
         followed: followed(document),
         x,
     };
-    let missed = |model: &Model<S>, coupling: &Coupling, own: &[CoupledMotion<S>]| {
-        couplings::miss(&builder, model, coupling, own)
-    };
+    let missed = |model: &Model<S>, own: &Relation| couplings::miss(&builder, model, own);
     builder.coupled = couplings::couple(document, &assembly, &mut model, missed);
     count_turns(document, &builder, &mut model);
     if let (Some(sought), None) = (document.sought(), &unstarted) {
@@ -266,7 +264,7 @@ fn start<S: Scalar>(
         }
         // Rates of joints move those that are coupled with them.
         let mut coupled = moved.clone();
-        couplings::couple(document, assembly, &mut coupled, |_, _, _| S::zero());
+        couplings::couple(document, assembly, &mut coupled, |_, _| S::zero());
         start_rates::set(&starts.coupled(&coupled), &mut coupled)?;
         for (body, found) in moved.bodies.iter_mut().zip(&coupled.bodies) {
             body.velocity = found.velocity;

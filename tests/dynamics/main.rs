@@ -14,6 +14,7 @@ mod conserves;
 mod constraint_derivatives;
 mod contacts;
 mod counted_turns;
+mod couplings;
 mod dead_points;
 mod distributed_loads;
 mod drive_gradients;

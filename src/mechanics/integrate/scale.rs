@@ -44,10 +44,8 @@ impl Elastic {
             carries.resize(model.bodies.len(), false);
         }
         // The bodies of coupled joints count themselves.
-        let modes = model.joints.iter().filter(|joint| joint.is_coupled());
-        let modes = modes.flat_map(|joint| &joint.modes);
-        for (body, _) in modes.flat_map(|own| &own.places) {
-            carries[*body] = true;
+        for body in model.coordinates() {
+            carries[body] = true;
         }
         for body in displacements.iter().flat_map(MeanSquare::carriers) {
             carries[body] = true;

@@ -320,8 +320,10 @@ impl Plane {
                         examiner.zero(n.dot(direction), largest(direction), what);
                     }
                 }
-                // Flexible bodies that carry it have no plane but by chance, which is not looked for.
-                LoadKind::Distributed(_) => examiner.zero(S::one(), 1.0, what),
+                // Flexible bodies that carry it, and stiffnesses, have no plane but by chance, which is not looked for.
+                LoadKind::Distributed(_) | LoadKind::Bushing { .. } => {
+                    examiner.zero(S::one(), 1.0, what)
+                }
                 LoadKind::Spring { .. }
                 | LoadKind::Drag { .. }
                 | LoadKind::BallDamping { .. }

@@ -44,6 +44,7 @@ pub(super) fn candidates(model: &Model<f64>) -> Vec<Vec3<f64>> {
         | JointKind::Universal
         | JointKind::Rod
         | JointKind::Weld
+        | JointKind::Free
         | JointKind::Attachment
         | JointKind::Coupled(_) => false,
     };
@@ -155,6 +156,7 @@ fn vectors(model: &Model<f64>) -> (Vec<Vec3<f64>>, Vec<Vec3<f64>>) {
             LoadKind::TorsionSpring { .. }
             | LoadKind::Damping { .. }
             | LoadKind::BallDamping { .. }
+            | LoadKind::Bushing { .. }
             | LoadKind::Friction { .. }
             | LoadKind::JointStop { .. }
             | LoadKind::Distributed(_) => {}

@@ -177,6 +177,7 @@ fn ends<S>(load: &Load<S>, model: &Model<S>) -> [Option<usize>; 2] {
         LoadKind::TorsionSpring { joint, .. }
         | LoadKind::Damping { joint, .. }
         | LoadKind::BallDamping { joint, .. }
+        | LoadKind::Bushing { joint, .. }
         | LoadKind::Friction { joint, .. }
         | LoadKind::JointStop { joint, .. } => {
             let joint = &model.joints[joint];
@@ -227,6 +228,7 @@ fn leave_out<S: Scalar>(model: &mut Model<S>, number: &[Option<usize>]) -> [Vec<
             }
             LoadKind::Damping { joint, .. }
             | LoadKind::BallDamping { joint, .. }
+            | LoadKind::Bushing { joint, .. }
             | LoadKind::Friction { joint, .. } => new_joint(joint),
         }
     }

@@ -1,11 +1,11 @@
-//! Couplings: linear relations between the motions of joints, as of gears, racks, screws and belts.
+//! Couplings: linear relations between relative motions of bodies, as of gears, racks, screws and belts.
 //!
 //! ```text
-//! Σ c_i x_i = C       x_i the angle or displacement of a joint, over any number of turns
+//! Σ c_i x_i = C       x_i an angle about an axis of two bodies or a displacement along it, over any number of turns
 //! ```
 //!
-//! x_1 … x_{n−1} are states: coordinates of bodies without mass, each with one unknown. A row for each makes its joint
-//! follow, and one makes the last joint follow all of them,
+//! x_1 … x_{n−1} are states: coordinates of bodies without mass, each with one unknown. A row for each makes its bodies
+//! follow, and one makes the last two follow all of them,
 //!
 //! ```text
 //! sin(x_i − θ_i(q)) = 0  or  x_i − s_i(q) = 0,       x_n = (C − Σ c_i x_i) / c_n
@@ -20,14 +20,15 @@ use super::drive::DegreeOfFreedom;
 use super::flexible::Modes;
 use super::joint::{Joint, JointFrame, JointKind};
 use super::{Mobility, Model, RigidBody};
-use crate::math::{Scalar, Vec3, rotation};
+use crate::math::{Mat3, Scalar, Vec3, rotation};
+use std::ops::Range;
 
-/// A motion of a joint in a coupling.
-#[derive(Clone, Copy, Debug)]
+/// A relative motion of two bodies in a coupling.
+#[derive(Clone, Debug)]
 pub struct CoupledMotion<S> {
-    /// The joint.
-    pub joint: usize,
-    /// Its rotation about e3 or its displacement along it.
+    /// The bodies and frames, as of a joint, and the name.
+    pub joint: Joint<S>,
+    /// The rotation about e3 or the displacement along it.
     pub dof: DegreeOfFreedom,
     /// c.
     pub factor: S,
@@ -41,9 +42,19 @@ impl<S: Scalar> Model<S> {
 
     /// Whether a body carries the coordinate of a coupling.
     pub fn is_coordinate(&self, body: usize) -> bool {
+        self.coordinates().contains(&body)
+    }
+
+    /// The bodies that carry coordinates of couplings, which follow each other; empty without.
+    pub fn coordinates(&self) -> Range<usize> {
         let coupled = self.joints.iter().filter(|joint| joint.is_coupled());
         let modes = coupled.filter_map(|joint| joint.modes.as_ref());
-        modes.flat_map(|own| &own.places).any(|own| own.0 == body)
+        let all = modes.flat_map(|own| &own.places).map(|own| own.0);
+        let ends = all.fold(None, |ends: Option<(usize, usize)>, body| match ends {
+            None => Some((body, body)),
+            Some((first, last)) => Some((first.min(body), last.max(body))),
+        });
+        ends.map_or(0..0, |(first, last)| first..last + 1)
     }
 
     /// The bodies of each coupling: those of its joints (`None` is ground), and those that carry its coordinates.
@@ -68,16 +79,16 @@ impl<S: Scalar> Model<S> {
         ties
     }
 
-    /// Couples motions of joints, which the bodies' placement satisfies up to `miss`, C − Σ c_i x_i there: the joint of
-    /// each motion that is added. The factor of the last motion is not zero.
+    /// Couples motions, which the bodies' placement satisfies up to `miss`, C − Σ c_i x_i there: the joint of each motion
+    /// that is added. The factor of the last motion is not zero.
     pub fn couple(&mut self, name: &str, motions: &[CoupledMotion<S>], miss: S) -> Vec<usize> {
         let Some((last, others)) = motions.split_last() else {
             return Vec::new();
         };
         let first = self.bodies.len();
         for (i, motion) in others.iter().enumerate() {
-            let joint = &self.joints[motion.joint].name;
-            let mut carrier = RigidBody::massless(format!("{name}, motion of {joint}"));
+            let of = &motion.joint.name;
+            let mut carrier = RigidBody::massless(format!("{name}, motion of {of}"));
             carrier.mobility = Mobility::carrier(1);
             self.bodies.push(carrier);
             self.follow(name, motion, S::zero(), vec![(first + i, S::one())]);
@@ -98,7 +109,7 @@ impl<S: Scalar> Model<S> {
         shift: S,
         factors: Vec<(usize, S)>,
     ) {
-        let joint = &self.joints[motion.joint];
+        let joint = &motion.joint;
         let along = |factor: S| Vec3::new(S::zero(), S::zero(), factor);
         let (mut displacement, mut turn) = (Vec::new(), Vec::new());
         for &(_, factor) in &factors {
@@ -131,7 +142,7 @@ impl<S: Scalar> Model<S> {
         let a = &self.bodies[joint.body_a];
         let (origin, turned) = match joint.body_b.map(|body| &self.bodies[body]) {
             Some(b) => (b.position, rotation::matrix(&b.orientation)),
-            None => (Vec3::zeros(), crate::math::Mat3::identity()),
+            None => (Vec3::zeros(), Mat3::identity()),
         };
         let turn_a = rotation::matrix(&a.orientation);
         let mut frame = joint.frame_b;

@@ -130,6 +130,8 @@ pub enum JointKind {
     Rod,
     /// Two bodies move as one: 6 rows.
     Weld,
+    /// Two bodies move freely: no row. Its frames are those of a bushing.
+    Free,
     /// Body B is the interface of a point of the flexible body whose frame is body A: 6 rows.
     Attachment,
     /// A rotation or displacement of another joint that follows the coordinates of a coupling: 1 row (see
@@ -176,6 +178,7 @@ impl JointKind {
                 Perpendicular { a: 2, b: 0 },
             ],
             JointKind::Rod => &[Distance],
+            JointKind::Free => &[],
             JointKind::Weld | JointKind::Attachment => &[
                 Coincident(0),
                 Coincident(1),
@@ -199,6 +202,7 @@ impl JointKind {
             | JointKind::Universal
             | JointKind::Rod
             | JointKind::Weld
+            | JointKind::Free
             | JointKind::Attachment
             | JointKind::Coupled(_) => &[],
         }
@@ -207,7 +211,7 @@ impl JointKind {
     /// Frame axes that both bodies share. The rows alone would also admit a rotation by 180°.
     pub fn common_axes(self) -> &'static [usize] {
         match self {
-            JointKind::Spherical | JointKind::Universal | JointKind::Rod => &[],
+            JointKind::Spherical | JointKind::Universal | JointKind::Rod | JointKind::Free => &[],
             JointKind::Revolute
             | JointKind::Planar
             | JointKind::Cylindrical
@@ -230,6 +234,7 @@ impl JointKind {
             JointKind::Universal => "universal",
             JointKind::Rod => "rod",
             JointKind::Weld => "weld",
+            JointKind::Free => "free",
             JointKind::Attachment => "attachment",
             JointKind::Coupled(_) => "coupled",
         }

@@ -79,6 +79,7 @@ impl<S: Scalar> Model<S> {
             LoadKind::Damping { coefficient, .. }
             | LoadKind::BallDamping { coefficient, .. }
             | LoadKind::Drag { coefficient, .. } => coefficient.re() == 0.0,
+            LoadKind::Bushing { damping, .. } => damping.iter().all(|x| x.re() == 0.0),
             LoadKind::Friction { size, .. } => size.re() == 0.0,
             LoadKind::JointStop { law, .. } | LoadKind::DistanceStop { law, .. } => {
                 law.dissipation.re() == 0.0

@@ -230,24 +230,17 @@ impl Checker<'_> {
             }
             return;
         };
-        // The motions of a coupling with faults are not known.
-        if !self.sound() {
-            return;
-        }
-        let motions = moved(self.document, coupling);
-        if observed(self.document, &motions, of).is_none() {
-            let joints = &self.document.joints;
-            let name = |own: &(usize, DegreeOfFreedom)| Some(joints.get_index(own.0)?.0.as_str());
-            let names: Vec<&str> = motions.iter().filter_map(name).collect();
-            let found = match &of.joint {
-                Some(joint) => format!("\"{joint}\""),
-                None => "a motion that it has not".to_owned(),
+        if observed(coupling, of).is_none() {
+            let named = |own: &String| moved(coupling).iter().any(|(name, _)| *name == own);
+            let mut names: Vec<&str> = moved(coupling).iter().map(|own| own.0.as_str()).collect();
+            names.dedup();
+            let names = names.join(", ");
+            let (key, found) = match &of.on {
+                Some(on) if !named(on) => ("on", format!("\"{on}\"")),
+                _ => ("motion", "a motion that is not coupled".to_owned()),
             };
-            let expected = format!(
-                "a motion of the coupling, whose joints are {}",
-                names.join(", ")
-            );
-            self.fault(Finding::new(join(pointer, "joint"), found, expected));
+            let expected = format!("a motion of the coupling, which is on {names}");
+            self.fault(Finding::new(join(pointer, key), found, expected));
         }
     }
 }
