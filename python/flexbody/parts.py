@@ -97,6 +97,8 @@ __all__ = [
     "TorqueInTime",
     "VaryingTorque",
     "Motion",
+    "BushingStiffness",
+    "BushingDamping",
     "Surface2",
     "ContactFriction",
     "PressureInTime",
@@ -106,12 +108,15 @@ __all__ = [
     "Drive",
     "Turning",
     "Sliding",
+    "Coupling",
+    "Term",
     "TerminalEvent",
     "Quantity",
     "EnergyKind",
     "PowerOf",
     "CountedFrom",
     "ReactionAxes",
+    "CoupledMotion",
     "Gate",
     "SectionPlace",
     "SectionComponent",
@@ -196,6 +201,8 @@ __all__ = [
     "drive",
     "turning",
     "sliding",
+    "couplings",
+    "term",
     "terminal_event",
     "quantities",
     "power_ofs",
@@ -483,7 +490,7 @@ class SlideStart(Part):
 
 
 class Load(Part):
-    """A force, torque, spring, damper, friction, drag, stop or contact. Made by `loads`."""
+    """A force, torque, spring, damper, bushing, friction, drag, stop or contact. Made by `loads`."""
 
     __slots__ = ()
 
@@ -540,6 +547,20 @@ class Turning(Part):
 
 class Sliding(Part):
     """Function of time: a displacement. Made by `sliding`."""
+
+    __slots__ = ()
+
+
+class Coupling(Part):
+    """A linear relation between the motions of joints, over any number of turns: gears, a rack, a screw, a belt, or
+    any other. It holds as the bodies are placed. Made by `couplings`.
+    """
+
+    __slots__ = ()
+
+
+class Term(Part):
+    """A motion of a joint with its factor. Made by `term`."""
 
     __slots__ = ()
 
@@ -728,6 +749,12 @@ TorqueInTime: TypeAlias = Union[Real, VaryingTorque]
 Motion: TypeAlias = Literal["turn", "slide"]
 """A degree of freedom of a joint."""
 
+BushingStiffness: TypeAlias = Union[Vector, Matrix]
+"""Stiffness of a bushing."""
+
+BushingDamping: TypeAlias = Union[Vector, Matrix]
+"""Damping of a bushing."""
+
 PressureInTime: TypeAlias = Union[Real, VaryingPressure]
 """Magnitude of a pressure."""
 
@@ -742,6 +769,9 @@ CountedFrom: TypeAlias = Literal["axes", "placement"]
 
 ReactionAxes: TypeAlias = Literal["ground", "joint"]
 """Axes of the direction of a reaction."""
+
+CoupledMotion: TypeAlias = Literal["turn", "slide"]
+"""Which motion of a joint."""
 
 SectionPlace: TypeAlias = Union[str, Real]
 """A section of a beam."""
@@ -1580,6 +1610,23 @@ def drive(*, joint: str, turn: Turning | None = None, slide: Sliding | None = No
         Displacement along the axis as a function of time.
     """
     return made(Drive, "drive", locals())
+
+
+@checked
+def term(*, joint: str, turn: Real | None = None, slide: Real | None = None) -> Term:
+    """A motion of a joint with its factor.
+
+    Parameters
+    ----------
+    joint : text
+        Name of a revolute, planar, prismatic or cylindrical joint. Its motion is that of its first body against
+        the second (ground counts as the second).
+    turn : number [that of the terms per rad], optional
+        Factor of the angle about the axis.
+    slide : number [that of the terms per m], optional
+        Factor of the displacement along the axis, instead of `turn`.
+    """
+    return made(Term, "term", locals())
 
 
 @checked
@@ -2608,9 +2655,35 @@ class joints(Kinds):
         """
         return made(Joint, "joints.weld", locals())
 
+    @staticmethod
+    @checked
+    def free(*, between: Sequence[str], at: JointPlace, axis: Axis | None = None, cross: Axis | None = None) -> Joint:
+        """No constraint: the place and axes of a bushing.
+
+        Parameters
+        ----------
+        between : list of 2 texts
+            The two bodies; one of them may be "ground".
+        at : text or numbers, shape (3,) [m] or `point_pair(…)`
+            Position at the start.
+            text: `"body.point"`, or `"body"` for the origin of its axes.
+            numbers, shape (3,) [m]: Ground coordinates.
+            `point_pair(…)`: One point on each body; assembly brings them together.
+        axis : numbers, shape (3,) or `body_axis(…)`, optional
+            Its third axis e3 at the start, of any length but zero; default [0, 0, 1].
+            numbers, shape (3,): In ground axes.
+            `body_axis(…)`: In the axes of a body.
+        cross : numbers, shape (3,) or `body_axis(…)`, optional
+            Its first axis e1 at the start, of any length but zero, across `axis`; default the projection of the
+            ground axis that is farthest from that.
+            numbers, shape (3,): In ground axes.
+            `body_axis(…)`: In the axes of a body.
+        """
+        return made(Joint, "joints.free", locals())
+
 
 class loads(Kinds):
-    """A force, torque, spring, damper, friction, drag, stop or contact."""
+    """A force, torque, spring, damper, bushing, friction, drag, stop or contact."""
 
     @staticmethod
     @checked
@@ -2720,6 +2793,7 @@ class loads(Kinds):
         joint: str,
         stiffness: Real,
         rest_angle: Real | None = None,
+        cubic: Real | None = None,
         damping: Real | None = None,
     ) -> Load:
         """A spring with a damper about the axis of a revolute or planar joint.
@@ -2733,6 +2807,8 @@ class loads(Kinds):
         rest_angle : number [rad], optional
             Angle at zero torque: of the first body relative to the second (ground counts as the second) about the
             axis, from the placement; default 0.
+        cubic : number [N m/rad³], optional
+            Cubic stiffness k3 of the torque k x + k3 x³, default 0.
         damping : number at least 0 [N m s/rad], optional
             Damping, default 0.
         """
@@ -2755,6 +2831,29 @@ class loads(Kinds):
             "slide": Displacement along its axis.
         """
         return made(Load, "loads.damping", locals())
+
+    @staticmethod
+    @checked
+    def bushing(*, joint: str, stiffness: BushingStiffness, damping: BushingDamping | None = None) -> Load:
+        """Linear elastic forces and torques of all relative motion in a joint, with damping.
+
+        Parameters
+        ----------
+        joint : text
+            Name of a joint: a free one, or one that leaves some of the motion, such as a spherical or universal
+            joint.
+        stiffness : numbers, shape (6,) [N/m, N m/rad] or numbers, shape (6, 6) [N/m, N, N m/rad]
+            K.
+            numbers, shape (6,) [N/m, N m/rad]: Its diagonal: three numbers of displacements along e1, e2, e3 and
+                three of rotations about them.
+            numbers, shape (6, 6) [N/m, N, N m/rad]: Its rows; symmetric.
+        damping : numbers, shape (6,) [N s/m, N m s/rad] or numbers, shape (6, 6) [N s/m, N s, N m s/rad], optional
+            C, default zero.
+            numbers, shape (6,) [N s/m, N m s/rad]: Its diagonal: three numbers of displacements along e1, e2, e3 and
+                three of rotations about them.
+            numbers, shape (6, 6) [N s/m, N s, N m s/rad]: Its rows; symmetric.
+        """
+        return made(Load, "loads.bushing", locals())
 
     @staticmethod
     @checked
@@ -3323,6 +3422,161 @@ class sliding(Kinds):
         return made(Sliding, "sliding.table", locals())
 
 
+class couplings(Kinds):
+    """A linear relation between the motions of joints, over any number of turns: gears, a rack, a screw, a belt, or
+    any other. It holds as the bodies are placed.
+    """
+
+    @staticmethod
+    @checked
+    def gear(
+        *,
+        gears: Sequence[str],
+        carrier: str | None = None,
+        teeth: Vector | None = None,
+        radii: Vector | None = None,
+        ratio: Real | None = None,
+        inner: bool | None = None,
+    ) -> Coupling:
+        """Two gears with parallel axes.
+
+        Parameters
+        ----------
+        gears : list of 2 texts
+            The two bodies.
+        carrier : text, optional
+            The body that holds the axes, or "ground"; default the one to which both are hinged.
+        teeth : numbers, shape (2,) above 0, optional
+            Numbers of teeth.
+        radii : numbers, shape (2,) above 0 [m], optional
+            Pitch radii, instead of `teeth`.
+        ratio : number above 0, optional
+            Turns of the first gear for one of the second, instead of `teeth`.
+        inner : bool, optional
+            Whether one of them has inner teeth, so that both turn the same way, default false.
+        """
+        return made(Coupling, "couplings.gear", locals())
+
+    @staticmethod
+    @checked
+    def bevel(
+        *,
+        gears: Sequence[str],
+        at: Location,
+        carrier: str | None = None,
+        teeth: Vector | None = None,
+        ratio: Real | None = None,
+    ) -> Coupling:
+        """Two gears whose axes meet.
+
+        Parameters
+        ----------
+        gears : list of 2 texts
+            The two bodies.
+        at : text or numbers, shape (3,) [m]
+            A place in the placement at which the teeth meet, in the plane of both axes. Its distances from them are
+            the radii.
+            text: `"body.point"`, or `"body"` for the origin of its axes.
+            numbers, shape (3,) [m]: Ground coordinates.
+        carrier : text, optional
+            The body that holds the axes, or "ground"; default the one to which both are hinged.
+        teeth : numbers, shape (2,) above 0, optional
+            Numbers of teeth, instead of these radii.
+        ratio : number above 0, optional
+            Turns of the first gear for one of the second, instead of these radii.
+        """
+        return made(Coupling, "couplings.bevel", locals())
+
+    @staticmethod
+    @checked
+    def rack_and_pinion(
+        *,
+        rack: str,
+        pinion: str,
+        at: Location,
+        carrier: str | None = None,
+        radius: Real | None = None,
+    ) -> Coupling:
+        """A rack that a pinion drives.
+
+        Parameters
+        ----------
+        rack : text
+            The body that slides.
+        pinion : text
+            The gear.
+        at : text or numbers, shape (3,) [m]
+            A place in the placement at which the teeth meet: the point of the rack's pitch line that is nearest to
+            the axis.
+            text: `"body.point"`, or `"body"` for the origin of its axes.
+            numbers, shape (3,) [m]: Ground coordinates.
+        carrier : text, optional
+            The body on which they move, or "ground"; default the one to which both are joined.
+        radius : number above 0 [m], optional
+            Pitch radius, default the distance of `at` from the axis.
+        """
+        return made(Coupling, "couplings.rack_and_pinion", locals())
+
+    @staticmethod
+    @checked
+    def screw(*, joint: str, lead: Real) -> Coupling:
+        """A screw: a cylindrical joint that moves by its lead in a turn.
+
+        Parameters
+        ----------
+        joint : text
+            Name of the cylindrical joint.
+        lead : number [m]
+            Displacement in a turn; negative of a left-hand thread.
+        """
+        return made(Coupling, "couplings.screw", locals())
+
+    @staticmethod
+    @checked
+    def belt(
+        *,
+        pulleys: Sequence[str],
+        carrier: str | None = None,
+        radii: Vector | None = None,
+        teeth: Vector | None = None,
+        ratio: Real | None = None,
+        crossed: bool | None = None,
+    ) -> Coupling:
+        """A belt or chain, or a rope without slip, about two pulleys with parallel axes.
+
+        Parameters
+        ----------
+        pulleys : list of 2 texts
+            The two bodies.
+        carrier : text, optional
+            The body that holds the axes, or "ground"; default the one to which both are hinged.
+        radii : numbers, shape (2,) above 0 [m], optional
+            Radii.
+        teeth : numbers, shape (2,) above 0, optional
+            Numbers of teeth, instead of `radii`.
+        ratio : number above 0, optional
+            Turns of the first pulley for one of the second, instead of `radii`.
+        crossed : bool, optional
+            Whether the belt crosses, so that the pulleys turn in opposite directions, default false.
+        """
+        return made(Coupling, "couplings.belt", locals())
+
+    @staticmethod
+    @checked
+    def relation(*, terms: Sequence[Term], constant: Real | None = None) -> Coupling:
+        """Σ factor · motion = constant.
+
+        Parameters
+        ----------
+        terms : list of `term(…)`
+            The motions. The factor of the last is not zero in any design.
+        constant : number [that of the terms], optional
+            The constant, with motions counted from the placement as functions measure them; default its value at the
+            start.
+        """
+        return made(Coupling, "couplings.relation", locals())
+
+
 class quantities(Kinds):
     """A quantity at an instant."""
 
@@ -3816,6 +4070,25 @@ class quantities(Kinds):
             "joint": e1, e2, e3 of the joint on its first body (the one that is not ground); e3 is the joint's axis.
         """
         return made(Quantity, "quantities.joint_moment", locals())
+
+    @staticmethod
+    @checked
+    def coupling_reaction(*, coupling: str, on: str | None = None, motion: CoupledMotion | None = None) -> Quantity:
+        """Torque of a coupling on one of its wheels about its axis [N m], or force on its rack along the slide [N]; of a
+        screw or relation on the first body of a joint (the one that is not ground).
+
+        Parameters
+        ----------
+        coupling : text
+            Name of the coupling.
+        on : text, optional
+            One of its wheels, its rack, or a joint of a screw or relation; default the first.
+        motion : "turn" or "slide", optional
+            The motion of a joint, default its first in the coupling.
+            "turn": The rotation about the axis.
+            "slide": The displacement along the axis.
+        """
+        return made(Quantity, "quantities.coupling_reaction", locals())
 
     @staticmethod
     @checked
@@ -4760,8 +5033,8 @@ class case_combinations(Kinds):
 
 class MachineKeys(Document):
     """A multibody scene in motion, or structures under load cases; what is asked of them and what may be designed.
-    Units are SI, angles are in radians; the keys of bodies, joints, loads, drives, structures, materials, load
-    cases, functions, variables and constraints are their names.
+    Units are SI, angles are in radians; the keys of bodies, joints, loads, drives, couplings, structures,
+    materials, load cases, functions, variables and constraints are their names.
     """
 
     _order = (
@@ -4781,6 +5054,7 @@ class MachineKeys(Document):
         "joints",
         "loads",
         "drives",
+        "couplings",
         "simulation",
         "structures",
         "materials",
@@ -4987,14 +5261,14 @@ class MachineKeys(Document):
     def add_load(self, name: str, kind: Load) -> Name:
         """Adds a load.
 
-        A force, torque, spring, damper, friction, drag, stop or contact.
+        A force, torque, spring, damper, bushing, friction, drag, stop or contact.
 
         Parameters
         ----------
         name : text
             Its name among the `loads`.
         kind : one of `loads`
-            A force, torque, spring, damper, friction, drag, stop or contact.
+            A force, torque, spring, damper, bushing, friction, drag, stop or contact.
         """
         return Name(name, self._add("loads", "load", name, kind))
 
@@ -5017,6 +5291,23 @@ class MachineKeys(Document):
             Displacement along the axis as a function of time.
         """
         return Name(name, self._add("drives", "drive", name, keys(locals(), "name")))
+
+    @checked
+    def add_coupling(self, name: str, kind: Coupling) -> Name:
+        """Adds a coupling.
+
+        A linear relation between the motions of joints, over any number of turns: gears, a rack, a screw, a belt, or
+        any other. It holds as the bodies are placed.
+
+        Parameters
+        ----------
+        name : text
+            Its name among the `couplings`.
+        kind : one of `couplings`
+            A linear relation between the motions of joints, over any number of turns: gears, a rack, a screw, a belt,
+            or any other. It holds as the bodies are placed.
+        """
+        return Name(name, self._add("couplings", "coupling", name, kind))
 
     @checked
     def set_simulation(

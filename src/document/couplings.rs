@@ -1,5 +1,6 @@
 //! Couplings in a file.
 
+use super::loads::Motion;
 use super::mechanics::Location;
 use crate::quantity::Quantity;
 use schemars::JsonSchema;
@@ -141,16 +142,6 @@ pub struct Term {
     pub slide: Option<Quantity>,
 }
 
-/// Which motion of a joint.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, Deserialize, JsonSchema)]
-#[serde(rename_all = "snake_case")]
-pub enum CoupledMotion {
-    /// The rotation about the axis.
-    Turn,
-    /// The displacement along the axis.
-    Slide,
-}
-
 /// How a coupling acts on a body.
 #[derive(Clone, Debug, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
@@ -160,7 +151,7 @@ pub struct OfCoupling {
     /// One of its wheels, its rack, or a joint of a screw or relation; default the first.
     pub on: Option<String>,
     /// The motion of a joint, default its first in the coupling.
-    pub motion: Option<CoupledMotion>,
+    pub motion: Option<Motion>,
 }
 
 /// Two wheels with parallel axes: what gears and belts have in common.

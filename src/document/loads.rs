@@ -252,7 +252,7 @@ pub struct TorsionSpring {
 }
 
 /// A degree of freedom of a joint.
-#[derive(Clone, Copy, Debug, Deserialize, JsonSchema)]
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Deserialize, JsonSchema)]
 #[serde(rename_all = "snake_case")]
 pub enum Motion {
     /// Rotation about its axis.
@@ -289,26 +289,22 @@ pub struct Bushing {
 
 /// Stiffness of a bushing.
 #[derive(Clone, Debug, Deserialize, JsonSchema)]
-#[serde(untagged)]
+#[serde(rename_all = "snake_case", deny_unknown_fields)]
 pub enum BushingStiffness {
     /// Its diagonal: three numbers of displacements along e1, e2, e3 and three of rotations about them.
-    #[schemars(extend("unit" = "N/m, N m/rad"))]
-    Diagonal([Quantity; 6]),
+    Diagonal(#[schemars(extend("unit" = "N/m, N m/rad"))] [Quantity; 6]),
     /// Its rows; symmetric.
-    #[schemars(extend("unit" = "N/m, N, N m/rad"))]
-    Rows([[Quantity; 6]; 6]),
+    Rows(#[schemars(extend("unit" = "N/m, N, N m/rad"))] [[Quantity; 6]; 6]),
 }
 
 /// Damping of a bushing.
 #[derive(Clone, Debug, Deserialize, JsonSchema)]
-#[serde(untagged)]
+#[serde(rename_all = "snake_case", deny_unknown_fields)]
 pub enum BushingDamping {
     /// Its diagonal: three numbers of displacements along e1, e2, e3 and three of rotations about them.
-    #[schemars(extend("unit" = "N s/m, N m s/rad"))]
-    Diagonal([Quantity; 6]),
+    Diagonal(#[schemars(extend("unit" = "N s/m, N m s/rad"))] [Quantity; 6]),
     /// Its rows; symmetric.
-    #[schemars(extend("unit" = "N s/m, N s, N m s/rad"))]
-    Rows([[Quantity; 6]; 6]),
+    Rows(#[schemars(extend("unit" = "N s/m, N s, N m s/rad"))] [[Quantity; 6]; 6]),
 }
 
 /// The 36 entries of a matrix of a bushing, by rows; `None` beside a diagonal.

@@ -22,9 +22,10 @@ use crate::math::{Mat3, Scalar, Vec3};
 use crate::model::{CoupledMotion, DegreeOfFreedom, Joint as ModelJoint, JointFrame, Model};
 use crate::schema::Document;
 use crate::schema::couplings::{
-    Bevel, CoupledMotion as Motion, Coupling, OfCoupling, RackAndPinion, Relation, Term, Wheels,
+    Bevel, Coupling, OfCoupling, RackAndPinion, Relation, Term, Wheels,
 };
 use crate::schema::joints::Joint;
+use crate::schema::loads::Motion;
 use crate::schema::mechanics::Location;
 use crate::system::placement::guess;
 use crate::system::{BodyMotion, Numbering, measures};

@@ -9,6 +9,7 @@ mod numbers;
 mod reference;
 
 mod allocations;
+mod bushings;
 mod checkpoints;
 mod conserves;
 mod constraint_derivatives;

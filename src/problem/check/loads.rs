@@ -184,7 +184,7 @@ impl Checker<'_> {
                 (a - b).abs() > 1e-9 * a.abs().max(b.abs())
             };
             for (i, k) in pairs.filter(skew) {
-                let place = join(&join(&join(pointer, key), i), k);
+                let place = join(&join(&join(&join(pointer, key), "rows"), i), k);
                 let (found, other) = (value(i, k), value(k, i));
                 let expected = format!("{other}, as row {k} has it: the matrix is symmetric");
                 self.fault(Finding::new(place, format!("{found}"), expected));
