@@ -174,7 +174,7 @@ pub struct Document {
     /// Settings of the plot of the motion.
     #[serde(default)]
     pub plot: Plot,
-    /// Parts by name: groups of bodies, joints, loads and drives that are defined once.
+    /// Parts by name: groups of bodies, joints, loads, drives and couplings that are defined once.
     #[serde(default, rename = "parts")]
     pub _parts: IndexMap<String, Part>,
     /// Uses of parts by name. The body "thigh" of a part is "NAME/thigh" in the machine.

@@ -234,6 +234,7 @@ fn explain_seen(problem: &Problem) -> Explanation {
         bodies: problem.body_count(),
         joints: problem.joint_count(),
         loads: written.loads.len(),
+        couplings: problem.couplings(&written),
         flexible: problem.flexible_bodies(&x),
         bases: motion
             .as_ref()

@@ -487,3 +487,30 @@ pub(super) fn observed(coupling: &Coupling, of: &OfCoupling) -> Option<usize> {
         is_named && of.motion.is_none_or(|own| own == *motion)
     })
 }
+
+/// How the last motion of each coupling follows the others in a model of the document, for messages.
+pub(super) fn described(document: &Document, model: &Model<f64>) -> Vec<String> {
+    let mut joints = model.joints.iter().filter(|joint| joint.is_coupled());
+    let mut all = Vec::new();
+    for (name, coupling) in &document.couplings {
+        let moved = moved(coupling);
+        let own: Vec<&ModelJoint<f64>> = joints.by_ref().take(moved.len()).collect();
+        let (Some((last, others)), Some(joint)) = (moved.split_last(), own.last()) else {
+            continue;
+        };
+        let word = |(of, motion): &(&String, Motion)| match motion {
+            Motion::Turn => format!("turn of \"{of}\""),
+            Motion::Slide => format!("slide of \"{of}\""),
+        };
+        let modes = joint.modes.iter();
+        let factors = modes.flat_map(|own| own.displacement.iter().zip(&own.rotation));
+        let terms = factors.zip(others).map(|((n, t), other)| {
+            let (factor, of) = (n.z + t.z, word(other));
+            format!("{factor:.6} {of}")
+        });
+        let terms: Vec<String> = terms.collect();
+        let (key, follows) = (coupling.key(), word(last));
+        all.push(format!("{name} ({key}): {follows} = {}", terms.join(" + ")));
+    }
+    all
+}

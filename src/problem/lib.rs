@@ -546,6 +546,11 @@ impl Problem {
         self.written.joints.len()
     }
 
+    /// How the last motion of each coupling follows the others in an unreduced model of the problem, for messages.
+    pub fn couplings(&self, model: &Model<f64>) -> Vec<String> {
+        couplings::described(&self.written, model)
+    }
+
     /// The flexible bodies at the design `x`: their coordinates and natural frequencies.
     pub fn flexible_bodies(&self, x: &[f64]) -> Vec<String> {
         flexible::described(&self.written, &self.extended(x))

@@ -689,3 +689,27 @@ fn redundant_couplings_are_named() {
     let notes: Vec<&str> = notes.collect();
     assert_eq!(notes, ["again (a)"]);
 }
+
+/// A pair of gears and their rack as a part that is used twice, the second time turned and with another ratio.
+#[test]
+fn parts_have_couplings() {
+    let part = json!({
+        "parameters": {"ratio": 2.5},
+        "bodies": {"a": disc(2.0, 0.3, [0.0; 3]), "b": disc(5.0, 1.1, [0.35, 0.0, 0.0])},
+        "joints": {"a": hinge(["a", "ground"], [0.0; 3]), "b": hinge(["b", "ground"], [0.35, 0.0, 0.0])},
+        "couplings": {"mesh": {"gear": {"gears": ["a", "b"], "ratio": "= ratio"}}},
+        "loads": {"motor": {"torque": {"body": "a", "direction": [0, 0, 1], "magnitude": 1.4}}}
+    });
+    let document = json!({
+        "version": 1, "name": "parts", "gravity": [0, 0, 0],
+        "parts": {"pair": part},
+        "use": {"left": {"part": "pair"},
+                "right": {"part": "pair", "at": [1, 2, 3], "turn": {"x": 40}, "parameters": {"ratio": 4}}},
+        "simulation": {"duration": 2, "tolerance": 1e-10},
+        "functions": {"left": {"final": {"angle": {"joint": "left/b"}}}, "right": {"final": {"angle": {"joint": "right/b"}}}}
+    });
+    for (found, ratio) in values(&document).into_iter().zip([2.5, 4.0]) {
+        let acceleration = 1.4 / (0.3 + 1.1 / (ratio * ratio));
+        close(found, -2.0 * acceleration / ratio, 1e-9, "a part");
+    }
+}
