@@ -713,3 +713,35 @@ fn parts_have_couplings() {
         close(found, -2.0 * acceleration / ratio, 1e-9, "a part");
     }
 }
+
+/// Two gears and a spring on an arm that turns steadily: with i = z_a/z_b and the inertia I of arm and places,
+/// ω² = k/(m22 − m12²/m11), m11 = I + J_a + J_b, m12 = J_a − i J_b, m22 = J_a + i² J_b, whatever the speed.
+#[test]
+fn vibrations_in_steady_rotation() {
+    let mut document = json!({
+        "version": 1, "name": "turning", "analysis": "modes", "gravity": [0, 0, 0],
+        "turning": {"axis": [0, 0, 1], "speed": 5},
+        "bodies": {"arm": disc(1.0, 0.2, [0.0; 3]), "a": disc(2.0, 0.3, [0.2, 0.0, 0.0]), "b": disc(3.0, 0.5, [-0.3, 0.0, 0.0])},
+        "joints": {"arm": hinge(["arm", "ground"], [0.0; 3]), "a": hinge(["a", "arm"], [0.2, 0.0, 0.0]),
+                   "b": hinge(["b", "arm"], [-0.3, 0.0, 0.0])},
+        "couplings": {"mesh": {"gear": {"gears": ["a", "b"], "teeth": [20, 30]}}},
+        "loads": {"spring": {"torsion_spring": {"joint": "a", "stiffness": 40}}},
+        "functions": {"frequency": {"frequency": {"mode": 1}}}
+    });
+    let i = 20.0 / 30.0;
+    let (m11, m12, m22) = (
+        0.2 + 2.0 * 0.04 + 3.0 * 0.09 + 0.8,
+        0.3 - 0.5 * i,
+        0.3 + 0.5 * i * i,
+    );
+    let exact = (40.0_f64 / (m22 - m12 * m12 / m11)).sqrt() / TAU;
+    close(values(&document)[0], exact, 1e-9, "frequency");
+    vary(
+        &mut document,
+        &[
+            "/couplings/mesh/gear/teeth/0".into(),
+            "/bodies/b/mass".into(),
+        ],
+    );
+    gradients_are_exact(&parsed(&document), &json!("turning"));
+}
