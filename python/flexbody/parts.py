@@ -116,7 +116,6 @@ __all__ = [
     "PowerOf",
     "CountedFrom",
     "ReactionAxes",
-    "CoupledMotion",
     "Gate",
     "SectionPlace",
     "SectionComponent",
@@ -194,6 +193,8 @@ __all__ = [
     "loads",
     "varying_forces",
     "varying_torques",
+    "bushing_stiffnesses",
+    "bushing_dampings",
     "surface2s",
     "contact_friction",
     "varying_pressures",
@@ -507,6 +508,18 @@ class VaryingTorque(Part):
     __slots__ = ()
 
 
+class BushingStiffness(Part):
+    """Stiffness of a bushing. Made by `bushing_stiffnesses`."""
+
+    __slots__ = ()
+
+
+class BushingDamping(Part):
+    """Damping of a bushing. Made by `bushing_dampings`."""
+
+    __slots__ = ()
+
+
 class Surface2(Part):
     """Surface of a contact. Directions are in ground axes at the start and fixed in the body. Made by `surface2s`."""
 
@@ -749,12 +762,6 @@ TorqueInTime: TypeAlias = Union[Real, VaryingTorque]
 Motion: TypeAlias = Literal["turn", "slide"]
 """A degree of freedom of a joint."""
 
-BushingStiffness: TypeAlias = Union[Vector, Matrix]
-"""Stiffness of a bushing."""
-
-BushingDamping: TypeAlias = Union[Vector, Matrix]
-"""Damping of a bushing."""
-
 PressureInTime: TypeAlias = Union[Real, VaryingPressure]
 """Magnitude of a pressure."""
 
@@ -769,9 +776,6 @@ CountedFrom: TypeAlias = Literal["axes", "placement"]
 
 ReactionAxes: TypeAlias = Literal["ground", "joint"]
 """Axes of the direction of a reaction."""
-
-CoupledMotion: TypeAlias = Literal["turn", "slide"]
-"""Which motion of a joint."""
 
 SectionPlace: TypeAlias = Union[str, Real]
 """A section of a beam."""
@@ -2842,16 +2846,10 @@ class loads(Kinds):
         joint : text
             Name of a joint: a free one, or one that leaves some of the motion, such as a spherical or universal
             joint.
-        stiffness : numbers, shape (6,) [N/m, N m/rad] or numbers, shape (6, 6) [N/m, N, N m/rad]
+        stiffness : one of `bushing_stiffnesses`
             K.
-            numbers, shape (6,) [N/m, N m/rad]: Its diagonal: three numbers of displacements along e1, e2, e3 and
-                three of rotations about them.
-            numbers, shape (6, 6) [N/m, N, N m/rad]: Its rows; symmetric.
-        damping : numbers, shape (6,) [N s/m, N m s/rad] or numbers, shape (6, 6) [N s/m, N s, N m s/rad], optional
+        damping : one of `bushing_dampings`, optional
             C, default zero.
-            numbers, shape (6,) [N s/m, N m s/rad]: Its diagonal: three numbers of displacements along e1, e2, e3 and
-                three of rotations about them.
-            numbers, shape (6, 6) [N s/m, N s, N m s/rad]: Its rows; symmetric.
         """
         return made(Load, "loads.bushing", locals())
 
@@ -3174,6 +3172,58 @@ class varying_torques(Kinds):
             "spline": As smooth as the values. It may overshoot.
         """
         return made(VaryingTorque, "varying_torques.table", locals())
+
+
+class bushing_stiffnesses(Kinds):
+    """Stiffness of a bushing."""
+
+    @staticmethod
+    @checked
+    def diagonal(value: Vector, /) -> BushingStiffness:
+        """Its diagonal: three numbers of displacements along e1, e2, e3 and three of rotations about them.
+
+        Parameters
+        ----------
+        value : numbers, shape (6,) [N/m, N m/rad]
+        """
+        return made_of(BushingStiffness, "bushing_stiffnesses.diagonal", value)
+
+    @staticmethod
+    @checked
+    def rows(value: Matrix, /) -> BushingStiffness:
+        """Its rows; symmetric.
+
+        Parameters
+        ----------
+        value : numbers, shape (6, 6) [N/m, N, N m/rad]
+        """
+        return made_of(BushingStiffness, "bushing_stiffnesses.rows", value)
+
+
+class bushing_dampings(Kinds):
+    """Damping of a bushing."""
+
+    @staticmethod
+    @checked
+    def diagonal(value: Vector, /) -> BushingDamping:
+        """Its diagonal: three numbers of displacements along e1, e2, e3 and three of rotations about them.
+
+        Parameters
+        ----------
+        value : numbers, shape (6,) [N s/m, N m s/rad]
+        """
+        return made_of(BushingDamping, "bushing_dampings.diagonal", value)
+
+    @staticmethod
+    @checked
+    def rows(value: Matrix, /) -> BushingDamping:
+        """Its rows; symmetric.
+
+        Parameters
+        ----------
+        value : numbers, shape (6, 6) [N s/m, N s, N m s/rad]
+        """
+        return made_of(BushingDamping, "bushing_dampings.rows", value)
 
 
 class surface2s(Kinds):
@@ -4073,7 +4123,7 @@ class quantities(Kinds):
 
     @staticmethod
     @checked
-    def coupling_reaction(*, coupling: str, on: str | None = None, motion: CoupledMotion | None = None) -> Quantity:
+    def coupling_reaction(*, coupling: str, on: str | None = None, motion: Motion | None = None) -> Quantity:
         """Torque of a coupling on one of its wheels about its axis [N m], or force on its rack along the slide [N]; of a
         screw or relation on the first body of a joint (the one that is not ground).
 
@@ -4085,8 +4135,8 @@ class quantities(Kinds):
             One of its wheels, its rack, or a joint of a screw or relation; default the first.
         motion : "turn" or "slide", optional
             The motion of a joint, default its first in the coupling.
-            "turn": The rotation about the axis.
-            "slide": The displacement along the axis.
+            "turn": Rotation about its axis.
+            "slide": Displacement along its axis.
         """
         return made(Quantity, "quantities.coupling_reaction", locals())
 
@@ -5702,10 +5752,11 @@ class MachineKeys(Document):
         joints: Mapping[str, Joint] | None = None,
         loads: Mapping[str, Load] | None = None,
         drives: Mapping[str, Drive] | None = None,
+        couplings: Mapping[str, Coupling] | None = None,
     ) -> Name:
         """Adds a part.
 
-        A group of bodies, joints, loads and drives in axes of its own, or the file that has it.
+        A group of bodies, joints, loads, drives and couplings in axes of its own, or the file that has it.
 
         Parameters
         ----------
@@ -5725,6 +5776,8 @@ class MachineKeys(Document):
             Loads by name.
         drives : `drive(…)` by name, optional
             Drives by name.
+        couplings : one of `couplings` by name, optional
+            Couplings by name.
         """
         return Name(name, self._add("parts", "part", name, keys(locals(), "name")))
 
