@@ -294,7 +294,7 @@ pub enum BushingStiffness {
     /// Its diagonal: three numbers of displacements along e1, e2, e3 and three of rotations about them.
     Diagonal(#[schemars(extend("unit" = "N/m, N m/rad"))] [Quantity; 6]),
     /// Its rows; symmetric.
-    Rows(#[schemars(extend("unit" = "N/m, N, N m/rad"))] [[Quantity; 6]; 6]),
+    Rows(#[schemars(extend("unit" = "N/m, N, N m/rad"))] Box<[[Quantity; 6]; 6]>),
 }
 
 /// Damping of a bushing.
@@ -304,7 +304,7 @@ pub enum BushingDamping {
     /// Its diagonal: three numbers of displacements along e1, e2, e3 and three of rotations about them.
     Diagonal(#[schemars(extend("unit" = "N s/m, N m s/rad"))] [Quantity; 6]),
     /// Its rows; symmetric.
-    Rows(#[schemars(extend("unit" = "N s/m, N s, N m s/rad"))] [[Quantity; 6]; 6]),
+    Rows(#[schemars(extend("unit" = "N s/m, N s, N m s/rad"))] Box<[[Quantity; 6]; 6]>),
 }
 
 /// The 36 entries of a matrix of a bushing, by rows; `None` beside a diagonal.

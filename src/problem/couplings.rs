@@ -14,8 +14,6 @@
 //! with P the place where the teeth meet and o_i a point of the axis, all as placed.
 
 use super::placement::{Assembly, GROUND};
-use super::quantities::FunctionBuilder;
-use crate::functions::Rotation;
 use crate::math::rotation::matrix;
 use crate::math::scalar::{length, unit};
 use crate::math::{Mat3, Scalar, Vec3};
@@ -27,8 +25,6 @@ use crate::schema::couplings::{
 use crate::schema::joints::Joint;
 use crate::schema::loads::Motion;
 use crate::schema::mechanics::Location;
-use crate::system::placement::guess;
-use crate::system::{BodyMotion, Numbering, measures};
 use std::collections::{BTreeMap, VecDeque};
 use std::f64::consts::TAU;
 
@@ -423,37 +419,6 @@ pub(super) fn couple<S: Scalar>(
         motions.iter().zip(joints).map(followed).collect()
     };
     document.couplings.iter().map(one).collect()
-}
-
-/// By how much the placement misses the constant of a relation that has one.
-pub(super) fn miss<S: Scalar>(
-    builder: &FunctionBuilder<S>,
-    model: &Model<S>,
-    relation: &Relation,
-) -> S {
-    let Some(constant) = &relation.constant else {
-        return S::zero();
-    };
-    let numbering = Numbering::new(model);
-    let (q, v) = guess(model);
-    let mut bodies = Vec::new();
-    BodyMotion::all(&numbering, &q, &v, &mut bodies);
-    let placed = |term: &Term| match (&term.turn, &term.slide) {
-        (Some(factor), _) => {
-            let rotation: Rotation<S> = builder.joint_angle(&term.joint);
-            let twist = rotation.angle(&numbering, &q);
-            let angle = twist + rotation.first_turns(twist.re());
-            builder.assembly.quantity(factor) * angle
-        }
-        (None, Some(factor)) => {
-            let joint = &model.joints[builder.joint(&term.joint)];
-            builder.assembly.quantity(factor) * measures::slide(joint, &bodies)
-        }
-        (None, None) => S::zero(),
-    };
-    let terms = relation.terms.iter();
-    let placed = terms.fold(S::zero(), |sum, term| sum + placed(term));
-    builder.assembly.quantity(constant) - placed
 }
 
 /// The motions of a coupling, in the order of the model: the wheel, rack or joint of each, and how it moves.

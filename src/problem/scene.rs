@@ -16,7 +16,7 @@ use crate::math::{Scalar, Vec3};
 use crate::model::{DegreeOfFreedom, Mobility, Model, RigidBody};
 use crate::quantity::{Vector, vector};
 use crate::schema::Document;
-use crate::schema::couplings::Relation;
+use crate::schema::couplings::{Relation, Term};
 use crate::schema::flexible::Start;
 use crate::schema::functions::OfMotion;
 use crate::schema::loads::Load;
@@ -24,10 +24,10 @@ use crate::schema::mechanics::{Body, Shape};
 use crate::schema::modes::DampingRatio;
 use crate::schema::statics::Frequency;
 use crate::structures::modes::BEYOND;
-use crate::system::Numbering;
 use crate::system::equilibrium::{Follow, Request, Turning, Vibrations, WantedModes, settle};
 use crate::system::failure::AssemblyFailure;
 use crate::system::placement::guess;
+use crate::system::{BodyMotion, Numbering, measures};
 
 /// Default gravity \[m/s²\].
 pub const GRAVITY: [f64; 3] = [0.0, -9.81, 0.0];
@@ -76,7 +76,7 @@ pub fn with_places<S: Scalar>(
         followed: followed(document),
         x,
     };
-    let missed = |model: &Model<S>, own: &Relation| couplings::miss(&builder, model, own);
+    let missed = |model: &Model<S>, own: &Relation| miss(&builder, model, own);
     builder.coupled = couplings::couple(document, &assembly, &mut model, missed);
     count_turns(document, &builder, &mut model);
     if let (Some(sought), None) = (document.sought(), &unstarted) {
@@ -190,6 +190,33 @@ pub(super) fn turning<S: Scalar>(document: &Document, x: &[S]) -> Option<Turning
         point: own.at.as_ref().map_or(Vec3::zeros(), |at| vector(at, x)),
         speed: own.speed.get(x),
     })
+}
+
+/// By how much the placement misses the constant of a relation that has one.
+fn miss<S: Scalar>(builder: &FunctionBuilder<S>, model: &Model<S>, relation: &Relation) -> S {
+    let Some(constant) = &relation.constant else {
+        return S::zero();
+    };
+    let numbering = Numbering::new(model);
+    let (q, v) = guess(model);
+    let mut bodies = Vec::new();
+    BodyMotion::all(&numbering, &q, &v, &mut bodies);
+    let placed = |term: &Term| match (&term.turn, &term.slide) {
+        (Some(factor), _) => {
+            let rotation = builder.joint_angle(&term.joint);
+            let twist = rotation.angle(&numbering, &q);
+            let angle = twist + rotation.first_turns(twist.re());
+            builder.assembly.quantity(factor) * angle
+        }
+        (None, Some(factor)) => {
+            let joint = &model.joints[builder.joint(&term.joint)];
+            builder.assembly.quantity(factor) * measures::slide(joint, &bodies)
+        }
+        (None, None) => S::zero(),
+    };
+    let terms = relation.terms.iter();
+    let placed = terms.fold(S::zero(), |sum, term| sum + placed(term));
+    builder.assembly.quantity(constant) - placed
 }
 
 /// Gives torsion springs and stops of angles counters of their turns, which start as the angles of their joints do.
