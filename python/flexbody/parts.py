@@ -97,6 +97,8 @@ __all__ = [
     "TorqueInTime",
     "VaryingTorque",
     "Motion",
+    "BushingStiffness",
+    "BushingDamping",
     "Surface2",
     "ContactFriction",
     "PressureInTime",
@@ -106,6 +108,8 @@ __all__ = [
     "Drive",
     "Turning",
     "Sliding",
+    "Coupling",
+    "Term",
     "TerminalEvent",
     "Quantity",
     "EnergyKind",
@@ -189,6 +193,8 @@ __all__ = [
     "loads",
     "varying_forces",
     "varying_torques",
+    "bushing_stiffnesses",
+    "bushing_dampings",
     "surface2s",
     "contact_friction",
     "varying_pressures",
@@ -196,6 +202,8 @@ __all__ = [
     "drive",
     "turning",
     "sliding",
+    "couplings",
+    "term",
     "terminal_event",
     "quantities",
     "power_ofs",
@@ -483,7 +491,7 @@ class SlideStart(Part):
 
 
 class Load(Part):
-    """A force, torque, spring, damper, friction, drag, stop or contact. Made by `loads`."""
+    """A force, torque, spring, damper, bushing, friction, drag, stop or contact. Made by `loads`."""
 
     __slots__ = ()
 
@@ -496,6 +504,18 @@ class VaryingForce(Part):
 
 class VaryingTorque(Part):
     """Function of time: a torque. Made by `varying_torques`."""
+
+    __slots__ = ()
+
+
+class BushingStiffness(Part):
+    """Stiffness of a bushing. Made by `bushing_stiffnesses`."""
+
+    __slots__ = ()
+
+
+class BushingDamping(Part):
+    """Damping of a bushing. Made by `bushing_dampings`."""
 
     __slots__ = ()
 
@@ -540,6 +560,20 @@ class Turning(Part):
 
 class Sliding(Part):
     """Function of time: a displacement. Made by `sliding`."""
+
+    __slots__ = ()
+
+
+class Coupling(Part):
+    """A linear relation between the motions of joints, over any number of turns: gears, a rack, a screw, a belt, or
+    any other. It holds as the bodies are placed. Made by `couplings`.
+    """
+
+    __slots__ = ()
+
+
+class Term(Part):
+    """A motion of a joint with its factor. Made by `term`."""
 
     __slots__ = ()
 
@@ -1583,6 +1617,23 @@ def drive(*, joint: str, turn: Turning | None = None, slide: Sliding | None = No
 
 
 @checked
+def term(*, joint: str, turn: Real | None = None, slide: Real | None = None) -> Term:
+    """A motion of a joint with its factor.
+
+    Parameters
+    ----------
+    joint : text
+        Name of a revolute, planar, prismatic or cylindrical joint. Its motion is that of its first body against
+        the second (ground counts as the second).
+    turn : number [that of the terms per rad], optional
+        Factor of the angle about the axis.
+    slide : number [that of the terms per m], optional
+        Factor of the displacement along the axis, instead of `turn`.
+    """
+    return made(Term, "term", locals())
+
+
+@checked
 def terminal_event(*, measure: Quantity, reaches: Real) -> TerminalEvent:
     """An event that ends the run.
 
@@ -2608,9 +2659,35 @@ class joints(Kinds):
         """
         return made(Joint, "joints.weld", locals())
 
+    @staticmethod
+    @checked
+    def free(*, between: Sequence[str], at: JointPlace, axis: Axis | None = None, cross: Axis | None = None) -> Joint:
+        """No constraint: the place and axes of a bushing.
+
+        Parameters
+        ----------
+        between : list of 2 texts
+            The two bodies; one of them may be "ground".
+        at : text or numbers, shape (3,) [m] or `point_pair(…)`
+            Position at the start.
+            text: `"body.point"`, or `"body"` for the origin of its axes.
+            numbers, shape (3,) [m]: Ground coordinates.
+            `point_pair(…)`: One point on each body; assembly brings them together.
+        axis : numbers, shape (3,) or `body_axis(…)`, optional
+            Its third axis e3 at the start, of any length but zero; default [0, 0, 1].
+            numbers, shape (3,): In ground axes.
+            `body_axis(…)`: In the axes of a body.
+        cross : numbers, shape (3,) or `body_axis(…)`, optional
+            Its first axis e1 at the start, of any length but zero, across `axis`; default the projection of the
+            ground axis that is farthest from that.
+            numbers, shape (3,): In ground axes.
+            `body_axis(…)`: In the axes of a body.
+        """
+        return made(Joint, "joints.free", locals())
+
 
 class loads(Kinds):
-    """A force, torque, spring, damper, friction, drag, stop or contact."""
+    """A force, torque, spring, damper, bushing, friction, drag, stop or contact."""
 
     @staticmethod
     @checked
@@ -2720,6 +2797,7 @@ class loads(Kinds):
         joint: str,
         stiffness: Real,
         rest_angle: Real | None = None,
+        cubic: Real | None = None,
         damping: Real | None = None,
     ) -> Load:
         """A spring with a damper about the axis of a revolute or planar joint.
@@ -2733,6 +2811,8 @@ class loads(Kinds):
         rest_angle : number [rad], optional
             Angle at zero torque: of the first body relative to the second (ground counts as the second) about the
             axis, from the placement; default 0.
+        cubic : number [N m/rad³], optional
+            Cubic stiffness k3 of the torque k x + k3 x³, default 0.
         damping : number at least 0 [N m s/rad], optional
             Damping, default 0.
         """
@@ -2755,6 +2835,23 @@ class loads(Kinds):
             "slide": Displacement along its axis.
         """
         return made(Load, "loads.damping", locals())
+
+    @staticmethod
+    @checked
+    def bushing(*, joint: str, stiffness: BushingStiffness, damping: BushingDamping | None = None) -> Load:
+        """Linear elastic forces and torques of all relative motion in a joint, with damping.
+
+        Parameters
+        ----------
+        joint : text
+            Name of a joint: a free one, or one that leaves some of the motion, such as a spherical or universal
+            joint.
+        stiffness : one of `bushing_stiffnesses`
+            K.
+        damping : one of `bushing_dampings`, optional
+            C, default zero.
+        """
+        return made(Load, "loads.bushing", locals())
 
     @staticmethod
     @checked
@@ -3077,6 +3174,58 @@ class varying_torques(Kinds):
         return made(VaryingTorque, "varying_torques.table", locals())
 
 
+class bushing_stiffnesses(Kinds):
+    """Stiffness of a bushing."""
+
+    @staticmethod
+    @checked
+    def diagonal(value: Vector, /) -> BushingStiffness:
+        """Its diagonal: three numbers of displacements along e1, e2, e3 and three of rotations about them.
+
+        Parameters
+        ----------
+        value : numbers, shape (6,) [N/m, N m/rad]
+        """
+        return made_of(BushingStiffness, "bushing_stiffnesses.diagonal", value)
+
+    @staticmethod
+    @checked
+    def rows(value: Matrix, /) -> BushingStiffness:
+        """Its rows; symmetric.
+
+        Parameters
+        ----------
+        value : numbers, shape (6, 6) [N/m, N, N m/rad]
+        """
+        return made_of(BushingStiffness, "bushing_stiffnesses.rows", value)
+
+
+class bushing_dampings(Kinds):
+    """Damping of a bushing."""
+
+    @staticmethod
+    @checked
+    def diagonal(value: Vector, /) -> BushingDamping:
+        """Its diagonal: three numbers of displacements along e1, e2, e3 and three of rotations about them.
+
+        Parameters
+        ----------
+        value : numbers, shape (6,) [N s/m, N m s/rad]
+        """
+        return made_of(BushingDamping, "bushing_dampings.diagonal", value)
+
+    @staticmethod
+    @checked
+    def rows(value: Matrix, /) -> BushingDamping:
+        """Its rows; symmetric.
+
+        Parameters
+        ----------
+        value : numbers, shape (6, 6) [N s/m, N s, N m s/rad]
+        """
+        return made_of(BushingDamping, "bushing_dampings.rows", value)
+
+
 class surface2s(Kinds):
     """Surface of a contact. Directions are in ground axes at the start and fixed in the body."""
 
@@ -3321,6 +3470,161 @@ class sliding(Kinds):
             "spline": As smooth as the values. It may overshoot.
         """
         return made(Sliding, "sliding.table", locals())
+
+
+class couplings(Kinds):
+    """A linear relation between the motions of joints, over any number of turns: gears, a rack, a screw, a belt, or
+    any other. It holds as the bodies are placed.
+    """
+
+    @staticmethod
+    @checked
+    def gear(
+        *,
+        gears: Sequence[str],
+        carrier: str | None = None,
+        teeth: Vector | None = None,
+        radii: Vector | None = None,
+        ratio: Real | None = None,
+        inner: bool | None = None,
+    ) -> Coupling:
+        """Two gears with parallel axes.
+
+        Parameters
+        ----------
+        gears : list of 2 texts
+            The two bodies.
+        carrier : text, optional
+            The body that holds the axes, or "ground"; default the one to which both are hinged.
+        teeth : numbers, shape (2,) above 0, optional
+            Numbers of teeth.
+        radii : numbers, shape (2,) above 0 [m], optional
+            Pitch radii, instead of `teeth`.
+        ratio : number above 0, optional
+            Turns of the first gear for one of the second, instead of `teeth`.
+        inner : bool, optional
+            Whether one of them has inner teeth, so that both turn the same way, default false.
+        """
+        return made(Coupling, "couplings.gear", locals())
+
+    @staticmethod
+    @checked
+    def bevel(
+        *,
+        gears: Sequence[str],
+        at: Location,
+        carrier: str | None = None,
+        teeth: Vector | None = None,
+        ratio: Real | None = None,
+    ) -> Coupling:
+        """Two gears whose axes meet.
+
+        Parameters
+        ----------
+        gears : list of 2 texts
+            The two bodies.
+        at : text or numbers, shape (3,) [m]
+            A place in the placement at which the teeth meet, in the plane of both axes. Its distances from them are
+            the radii.
+            text: `"body.point"`, or `"body"` for the origin of its axes.
+            numbers, shape (3,) [m]: Ground coordinates.
+        carrier : text, optional
+            The body that holds the axes, or "ground"; default the one to which both are hinged.
+        teeth : numbers, shape (2,) above 0, optional
+            Numbers of teeth, instead of these radii.
+        ratio : number above 0, optional
+            Turns of the first gear for one of the second, instead of these radii.
+        """
+        return made(Coupling, "couplings.bevel", locals())
+
+    @staticmethod
+    @checked
+    def rack_and_pinion(
+        *,
+        rack: str,
+        pinion: str,
+        at: Location,
+        carrier: str | None = None,
+        radius: Real | None = None,
+    ) -> Coupling:
+        """A rack that a pinion drives.
+
+        Parameters
+        ----------
+        rack : text
+            The body that slides.
+        pinion : text
+            The gear.
+        at : text or numbers, shape (3,) [m]
+            A place in the placement at which the teeth meet: the point of the rack's pitch line that is nearest to
+            the axis.
+            text: `"body.point"`, or `"body"` for the origin of its axes.
+            numbers, shape (3,) [m]: Ground coordinates.
+        carrier : text, optional
+            The body on which they move, or "ground"; default the one to which both are joined.
+        radius : number above 0 [m], optional
+            Pitch radius, default the distance of `at` from the axis.
+        """
+        return made(Coupling, "couplings.rack_and_pinion", locals())
+
+    @staticmethod
+    @checked
+    def screw(*, joint: str, lead: Real) -> Coupling:
+        """A screw: a cylindrical joint that moves by its lead in a turn.
+
+        Parameters
+        ----------
+        joint : text
+            Name of the cylindrical joint.
+        lead : number [m]
+            Displacement in a turn; negative of a left-hand thread.
+        """
+        return made(Coupling, "couplings.screw", locals())
+
+    @staticmethod
+    @checked
+    def belt(
+        *,
+        pulleys: Sequence[str],
+        carrier: str | None = None,
+        radii: Vector | None = None,
+        teeth: Vector | None = None,
+        ratio: Real | None = None,
+        crossed: bool | None = None,
+    ) -> Coupling:
+        """A belt or chain, or a rope without slip, about two pulleys with parallel axes.
+
+        Parameters
+        ----------
+        pulleys : list of 2 texts
+            The two bodies.
+        carrier : text, optional
+            The body that holds the axes, or "ground"; default the one to which both are hinged.
+        radii : numbers, shape (2,) above 0 [m], optional
+            Radii.
+        teeth : numbers, shape (2,) above 0, optional
+            Numbers of teeth, instead of `radii`.
+        ratio : number above 0, optional
+            Turns of the first pulley for one of the second, instead of `radii`.
+        crossed : bool, optional
+            Whether the belt crosses, so that the pulleys turn in opposite directions, default false.
+        """
+        return made(Coupling, "couplings.belt", locals())
+
+    @staticmethod
+    @checked
+    def relation(*, terms: Sequence[Term], constant: Real | None = None) -> Coupling:
+        """Σ factor · motion = constant.
+
+        Parameters
+        ----------
+        terms : list of `term(…)`
+            The motions. The factor of the last is not zero in any design.
+        constant : number [that of the terms], optional
+            The constant, with motions counted from the placement as functions measure them; default its value at the
+            start.
+        """
+        return made(Coupling, "couplings.relation", locals())
 
 
 class quantities(Kinds):
@@ -3816,6 +4120,25 @@ class quantities(Kinds):
             "joint": e1, e2, e3 of the joint on its first body (the one that is not ground); e3 is the joint's axis.
         """
         return made(Quantity, "quantities.joint_moment", locals())
+
+    @staticmethod
+    @checked
+    def coupling_reaction(*, coupling: str, on: str | None = None, motion: Motion | None = None) -> Quantity:
+        """Torque of a coupling on one of its wheels about its axis [N m], or force on its rack along the slide [N]; of a
+        screw or relation on the first body of a joint (the one that is not ground).
+
+        Parameters
+        ----------
+        coupling : text
+            Name of the coupling.
+        on : text, optional
+            One of its wheels, its rack, or a joint of a screw or relation; default the first.
+        motion : "turn" or "slide", optional
+            The motion of a joint, default its first in the coupling.
+            "turn": Rotation about its axis.
+            "slide": Displacement along its axis.
+        """
+        return made(Quantity, "quantities.coupling_reaction", locals())
 
     @staticmethod
     @checked
@@ -4760,8 +5083,8 @@ class case_combinations(Kinds):
 
 class MachineKeys(Document):
     """A multibody scene in motion, or structures under load cases; what is asked of them and what may be designed.
-    Units are SI, angles are in radians; the keys of bodies, joints, loads, drives, structures, materials, load
-    cases, functions, variables and constraints are their names.
+    Units are SI, angles are in radians; the keys of bodies, joints, loads, drives, couplings, structures,
+    materials, load cases, functions, variables and constraints are their names.
     """
 
     _order = (
@@ -4781,6 +5104,7 @@ class MachineKeys(Document):
         "joints",
         "loads",
         "drives",
+        "couplings",
         "simulation",
         "structures",
         "materials",
@@ -4987,14 +5311,14 @@ class MachineKeys(Document):
     def add_load(self, name: str, kind: Load) -> Name:
         """Adds a load.
 
-        A force, torque, spring, damper, friction, drag, stop or contact.
+        A force, torque, spring, damper, bushing, friction, drag, stop or contact.
 
         Parameters
         ----------
         name : text
             Its name among the `loads`.
         kind : one of `loads`
-            A force, torque, spring, damper, friction, drag, stop or contact.
+            A force, torque, spring, damper, bushing, friction, drag, stop or contact.
         """
         return Name(name, self._add("loads", "load", name, kind))
 
@@ -5017,6 +5341,23 @@ class MachineKeys(Document):
             Displacement along the axis as a function of time.
         """
         return Name(name, self._add("drives", "drive", name, keys(locals(), "name")))
+
+    @checked
+    def add_coupling(self, name: str, kind: Coupling) -> Name:
+        """Adds a coupling.
+
+        A linear relation between the motions of joints, over any number of turns: gears, a rack, a screw, a belt, or
+        any other. It holds as the bodies are placed.
+
+        Parameters
+        ----------
+        name : text
+            Its name among the `couplings`.
+        kind : one of `couplings`
+            A linear relation between the motions of joints, over any number of turns: gears, a rack, a screw, a belt,
+            or any other. It holds as the bodies are placed.
+        """
+        return Name(name, self._add("couplings", "coupling", name, kind))
 
     @checked
     def set_simulation(
@@ -5411,10 +5752,11 @@ class MachineKeys(Document):
         joints: Mapping[str, Joint] | None = None,
         loads: Mapping[str, Load] | None = None,
         drives: Mapping[str, Drive] | None = None,
+        couplings: Mapping[str, Coupling] | None = None,
     ) -> Name:
         """Adds a part.
 
-        A group of bodies, joints, loads and drives in axes of its own, or the file that has it.
+        A group of bodies, joints, loads, drives and couplings in axes of its own, or the file that has it.
 
         Parameters
         ----------
@@ -5434,6 +5776,8 @@ class MachineKeys(Document):
             Loads by name.
         drives : `drive(…)` by name, optional
             Drives by name.
+        couplings : one of `couplings` by name, optional
+            Couplings by name.
         """
         return Name(name, self._add("parts", "part", name, keys(locals(), "name")))
 

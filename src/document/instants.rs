@@ -1,6 +1,7 @@
 //! Quantities at an instant, and combinations of them, in a file.
 
 use super::combined::{Distance, PowerOf, Relative};
+use super::couplings::OfCoupling;
 use super::measured::{
     AngularMomentum, JointReaction, JointSlide, LargestFibreStress, LargestSectionForce, OfSpring,
     OfStop, SectionComponent, SectionPlace,
@@ -72,6 +73,9 @@ pub enum Instant {
     JointForce(JointReaction),
     /// Component of the moment by which a joint acts on a body [N m], that of its drive included.
     JointMoment(JointReaction),
+    /// Torque of a coupling on one of its wheels about its axis [N m], or force on its rack along the slide \[N\]; of a screw
+    /// or relation on the first body of a joint (the one that is not ground).
+    CouplingReaction(OfCoupling),
     /// Distance of the points of a spring \[m\].
     SpringLength(OfSpring),
     /// Force by which a spring pulls its points together \[N\], damping included.

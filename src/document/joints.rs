@@ -28,6 +28,22 @@ pub enum Joint {
     Rod(Rod),
     /// A weld: the bodies move as one.
     Weld(Ball),
+    /// No constraint: the place and axes of a bushing.
+    Free(Free),
+}
+
+/// Bodies and place of a bushing.
+#[derive(Clone, Debug, Deserialize, JsonSchema)]
+#[serde(deny_unknown_fields)]
+pub struct Free {
+    /// The two bodies; one of them may be "ground".
+    pub between: [String; 2],
+    /// Position at the start.
+    pub at: JointPlace,
+    /// Its third axis e3 at the start, of any length but zero; default [0, 0, 1].
+    pub axis: Option<Axis>,
+    /// Its first axis e1 at the start, of any length but zero, across `axis`; default the projection of the ground axis that is farthest from that.
+    pub cross: Option<Axis>,
 }
 
 /// Bodies and place of a joint without an axis.
@@ -213,6 +229,7 @@ impl Joint {
             | Joint::Planar(axial)
             | Joint::Cylindrical(axial) => &axial.between,
             Joint::Universal(crossed) => &crossed.between,
+            Joint::Free(free) => &free.between,
             Joint::Rod(rod) => &rod.between,
         }
     }
@@ -226,6 +243,7 @@ impl Joint {
             | Joint::Planar(axial)
             | Joint::Cylindrical(axial) => Some(&axial.at),
             Joint::Universal(crossed) => Some(&crossed.at),
+            Joint::Free(free) => Some(&free.at),
             Joint::Rod(_) => None,
         }
     }
@@ -237,7 +255,11 @@ impl Joint {
             | Joint::Prismatic(axial)
             | Joint::Planar(axial)
             | Joint::Cylindrical(axial) => axial.start.as_ref(),
-            Joint::Spherical(_) | Joint::Universal(_) | Joint::Rod(_) | Joint::Weld(_) => None,
+            Joint::Spherical(_)
+            | Joint::Universal(_)
+            | Joint::Rod(_)
+            | Joint::Weld(_)
+            | Joint::Free(_) => None,
         }
     }
 
@@ -250,6 +272,7 @@ impl Joint {
             | Joint::Planar(axial)
             | Joint::Cylindrical(axial) => [Some(&axial.axis), None],
             Joint::Universal(crossed) => [Some(&crossed.axis), Some(&crossed.cross)],
+            Joint::Free(free) => [free.axis.as_ref(), free.cross.as_ref()],
         }
     }
 
@@ -265,6 +288,7 @@ impl Joint {
             Joint::Universal(_) => JointKind::Universal,
             Joint::Rod(_) => JointKind::Rod,
             Joint::Weld(_) => JointKind::Weld,
+            Joint::Free(_) => JointKind::Free,
         }
     }
 }

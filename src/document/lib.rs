@@ -2,6 +2,7 @@
 
 pub mod cases;
 pub mod combined;
+pub mod couplings;
 pub mod drives;
 pub mod elements;
 pub mod flexible;
@@ -26,6 +27,7 @@ pub mod structures;
 pub mod windows;
 
 use cases::Case;
+use couplings::Coupling;
 use drives::Drive;
 use flexbody_mechanics::system::equilibrium::{KnownStarts, Sought};
 use functions::{Function, Instant, WhichFunction};
@@ -49,8 +51,8 @@ pub const OF_PARAMETERS: &str = "that of the numbers it gives";
 pub const VERSION: u64 = 1;
 
 /// A multibody scene in motion, or structures under load cases; what is asked of them and what may be
-/// designed. Units are SI, angles are in radians; the keys of bodies, joints, loads, drives, structures,
-/// materials, load cases, functions, variables and constraints are their names.
+/// designed. Units are SI, angles are in radians; the keys of bodies, joints, loads, drives, couplings,
+/// structures, materials, load cases, functions, variables and constraints are their names.
 #[derive(Clone, Debug, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 #[schemars(
@@ -136,6 +138,9 @@ pub struct Document {
     /// Drives by name: prescribed motions of joints.
     #[serde(default)]
     pub drives: IndexMap<String, Drive>,
+    /// Couplings by name: gears, racks, screws, belts and other relations between motions of joints.
+    #[serde(default)]
+    pub couplings: IndexMap<String, Coupling>,
     /// Duration and accuracy of the simulation.
     pub simulation: Option<Simulation>,
     /// Structures of shells and beams by name, which do not move.
@@ -169,7 +174,7 @@ pub struct Document {
     /// Settings of the plot of the motion.
     #[serde(default)]
     pub plot: Plot,
-    /// Parts by name: groups of bodies, joints, loads and drives that are defined once.
+    /// Parts by name: groups of bodies, joints, loads, drives and couplings that are defined once.
     #[serde(default, rename = "parts")]
     pub _parts: IndexMap<String, Part>,
     /// Uses of parts by name. The body "thigh" of a part is "NAME/thigh" in the machine.

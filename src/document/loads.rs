@@ -7,7 +7,7 @@ use flexbody_mechanics::model;
 use schemars::JsonSchema;
 use serde::Deserialize;
 
-/// A force, torque, spring, damper, friction, drag, stop or contact.
+/// A force, torque, spring, damper, bushing, friction, drag, stop or contact.
 #[derive(Clone, Debug, Deserialize, JsonSchema)]
 #[serde(rename_all = "snake_case", deny_unknown_fields)]
 pub enum Load {
@@ -22,6 +22,8 @@ pub enum Load {
     TorsionSpring(TorsionSpring),
     /// Viscous damping in a joint.
     Damping(Damping),
+    /// Linear elastic forces and torques of all relative motion in a joint, with damping.
+    Bushing(Bushing),
     /// Coulomb friction in a joint: size times tanh(rate / width).
     Friction(Friction),
     /// Quadratic drag on a point of a body: c |u|² u / √(|u|² + w²) against its velocity u.
@@ -239,6 +241,10 @@ pub struct TorsionSpring {
     /// Stiffness.
     #[schemars(extend("unit" = "N m/rad", "minimum" = 0))]
     pub stiffness: Quantity,
+    /// Cubic stiffness k3 of the torque k x + k3 x³, default 0.
+    #[serde(default = "nothing")]
+    #[schemars(extend("unit" = "N m/rad³"))]
+    pub cubic: Quantity,
     /// Damping, default 0.
     #[serde(default = "nothing")]
     #[schemars(extend("unit" = "N m s/rad", "minimum" = 0))]
@@ -246,7 +252,7 @@ pub struct TorsionSpring {
 }
 
 /// A degree of freedom of a joint.
-#[derive(Clone, Copy, Debug, Deserialize, JsonSchema)]
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Deserialize, JsonSchema)]
 #[serde(rename_all = "snake_case")]
 pub enum Motion {
     /// Rotation about its axis.
@@ -266,6 +272,70 @@ pub struct Damping {
     /// Force or torque per unit of rate.
     #[schemars(extend("unit" = "N s/m or N m s/rad", "minimum" = 0))]
     pub coefficient: Quantity,
+}
+
+/// Linear elastic forces and torques of all relative motion in a joint, with damping: −(K x + C ẋ), x the displacement of its
+/// first body against the second along e1, e2, e3 and the rotation about them.
+#[derive(Clone, Debug, Deserialize, JsonSchema)]
+#[serde(deny_unknown_fields)]
+pub struct Bushing {
+    /// Name of a joint: a free one, or one that leaves some of the motion, such as a spherical or universal joint.
+    pub joint: String,
+    /// K.
+    pub stiffness: BushingStiffness,
+    /// C, default zero.
+    pub damping: Option<BushingDamping>,
+}
+
+/// Stiffness of a bushing.
+#[derive(Clone, Debug, Deserialize, JsonSchema)]
+#[serde(rename_all = "snake_case", deny_unknown_fields)]
+pub enum BushingStiffness {
+    /// Its diagonal: three numbers of displacements along e1, e2, e3 and three of rotations about them.
+    Diagonal(#[schemars(extend("unit" = "N/m, N m/rad"))] [Quantity; 6]),
+    /// Its rows; symmetric.
+    Rows(#[schemars(extend("unit" = "N/m, N, N m/rad"))] Box<[[Quantity; 6]; 6]>),
+}
+
+/// Damping of a bushing.
+#[derive(Clone, Debug, Deserialize, JsonSchema)]
+#[serde(rename_all = "snake_case", deny_unknown_fields)]
+pub enum BushingDamping {
+    /// Its diagonal: three numbers of displacements along e1, e2, e3 and three of rotations about them.
+    Diagonal(#[schemars(extend("unit" = "N s/m, N m s/rad"))] [Quantity; 6]),
+    /// Its rows; symmetric.
+    Rows(#[schemars(extend("unit" = "N s/m, N s, N m s/rad"))] Box<[[Quantity; 6]; 6]>),
+}
+
+/// The 36 entries of a matrix of a bushing, by rows; `None` beside a diagonal.
+pub type BushingEntries<'a> = [[Option<&'a Quantity>; 6]; 6];
+
+fn diagonal(all: &[Quantity; 6]) -> BushingEntries<'_> {
+    std::array::from_fn(|i| std::array::from_fn(|k| (i == k).then_some(&all[i])))
+}
+
+fn rows(all: &[[Quantity; 6]; 6]) -> BushingEntries<'_> {
+    all.each_ref().map(|row| row.each_ref().map(Some))
+}
+
+impl BushingStiffness {
+    /// Its entries.
+    pub fn entries(&self) -> BushingEntries<'_> {
+        match self {
+            Self::Diagonal(all) => diagonal(all),
+            Self::Rows(all) => rows(all),
+        }
+    }
+}
+
+impl BushingDamping {
+    /// Its entries.
+    pub fn entries(&self) -> BushingEntries<'_> {
+        match self {
+            Self::Diagonal(all) => diagonal(all),
+            Self::Rows(all) => rows(all),
+        }
+    }
 }
 
 /// Coulomb friction in a joint.
@@ -503,6 +573,7 @@ impl Load {
             Load::Spring(_) => "spring",
             Load::TorsionSpring(_) => "torsion_spring",
             Load::Damping(_) => "damping",
+            Load::Bushing(_) => "bushing",
             Load::Friction(_) => "friction",
             Load::Drag(_) => "drag",
             Load::Stop(_) => "stop",

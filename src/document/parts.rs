@@ -1,6 +1,7 @@
-//! Groups of bodies, joints, loads and drives that a file defines once and uses several times, and keys that
+//! Groups of bodies, joints, loads, drives and couplings that a file defines once and uses several times, and keys that
 //! several entries share. They are written out before the rest of a document is read.
 
+use super::couplings::Coupling;
 use super::drives::Drive;
 use super::joints::{Axis, Joint, JointPlace, JointStart};
 use super::loads::Load;
@@ -10,7 +11,7 @@ use indexmap::IndexMap;
 use schemars::JsonSchema;
 use serde::Deserialize;
 
-/// A group of bodies, joints, loads and drives in axes of its own, or the file that has it.
+/// A group of bodies, joints, loads, drives and couplings in axes of its own, or the file that has it.
 #[derive(Clone, Debug, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 pub struct Part {
@@ -36,6 +37,9 @@ pub struct Part {
     /// Drives by name.
     #[serde(default, rename = "drives")]
     pub _drives: IndexMap<String, Drive>,
+    /// Couplings by name.
+    #[serde(default, rename = "couplings")]
+    pub _couplings: IndexMap<String, Coupling>,
 }
 
 /// A use of a part.

@@ -234,6 +234,7 @@ fn explain_seen(problem: &Problem) -> Explanation {
         bodies: problem.body_count(),
         joints: problem.joint_count(),
         loads: written.loads.len(),
+        couplings: problem.couplings(&written),
         flexible: problem.flexible_bodies(&x),
         bases: motion
             .as_ref()
@@ -402,6 +403,7 @@ fn told(model: &Model<f64>, why: FallbackReason) -> String {
     match why {
         FallbackReason::Loops => "loops of joints reach far and overlap".into(),
         FallbackReason::Flexible => "a body is flexible".into(),
+        FallbackReason::Coupled => "joints are coupled".into(),
         FallbackReason::Body(body) => {
             let body = &model.bodies[body];
             let principal = body.inertia.symmetric_eigenvalues();

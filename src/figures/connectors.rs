@@ -89,7 +89,13 @@ pub(super) fn joined(
                 ConnectorKind::Hinge
             }
             // Welded bodies, and bodies that slide in a plane, have no common point.
-            JointKind::Weld | JointKind::Planar | JointKind::Attachment => continue,
+            JointKind::Weld
+            | JointKind::Free
+            | JointKind::Planar
+            | JointKind::Attachment
+            | JointKind::Coupled(_) => {
+                continue;
+            }
         };
         held.extend(both.iter().filter_map(|(body, point)| {
             let follows = kind != ConnectorKind::Slider;

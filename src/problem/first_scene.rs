@@ -2,12 +2,15 @@
 //! close or start, drives against each other, too many variables for the memory.
 
 use super::Problem;
+use super::couplings::{self, Wheel};
 use super::finding::Finding;
 use super::memory;
 use super::placement::Assembly;
 use super::pointer::join;
-use crate::math::Dual;
-use crate::model::{Joint, JointKind, RigidBody};
+use crate::math::{Dual, Vec3};
+use crate::model::{Joint as ModelJoint, JointKind, RigidBody};
+use crate::schema::couplings::Coupling;
+use crate::schema::joints::Joint;
 use crate::system::failure::AssemblyFailure;
 use crate::system::placement::length_scale;
 use crate::system::{Numbering, dead_points, initial, loads, rank, redundancy};
@@ -21,7 +24,7 @@ pub(super) fn too_many(problem: &Problem) -> Option<Finding> {
     let count = problem.variables.len();
     let model = problem.unlowered_scene::<f64>(&problem.start()).model;
     let scene = (model.bodies.len() * (size_of::<RigidBody<Dual>>() + 64))
-        + model.joints.len() * (size_of::<Joint<Dual>>() + 64);
+        + model.joints.len() * (size_of::<ModelJoint<Dual>>() + 64);
     let needed = count * (scene + count * OF_PAIR);
     let available = memory::available().filter(|available| needed > *available)?;
     let size = |bytes: usize| format!("{:.1} GB", bytes as f64 / 1e9);
@@ -65,11 +68,18 @@ pub(super) fn oblique(problem: &Problem) -> Option<Finding> {
     let start = problem.start_numbers();
     let assembly = Assembly::new(&problem.written, &problem.order, &start);
     problem.written.joints.iter().find_map(|(name, joint)| {
-        let [Some(axis), Some(cross)] = joint.axes() else {
+        let [axis, Some(cross)] = joint.axes() else {
             return None;
         };
-        let [axis, cross] = [axis, cross].map(|axis| assembly.axis(axis).normalize());
+        let axis = axis.map_or(Vec3::z(), |axis| assembly.axis(axis).normalize());
+        let cross = assembly.axis(cross).normalize();
         let cosine = axis.dot(&cross);
+        if let Joint::Free(_) = joint {
+            let pointer = join(&join(&join("/joints", name), "free"), "cross");
+            let expected = "an axis across \"axis\"";
+            let found = || Finding::new(pointer, "an axis along the other", expected);
+            return (axis.cross(&cross).norm() <= PERPENDICULAR).then(found);
+        }
         (cosine.abs() > PERPENDICULAR).then(|| {
             let pointer = join(&join(&join("/joints", name), "universal"), "cross");
             let degrees = cosine.acos().to_degrees();
@@ -77,6 +87,75 @@ pub(super) fn oblique(problem: &Problem) -> Option<Finding> {
             Finding::new(pointer, found, "one that is perpendicular to \"axis\"")
         })
     })
+}
+
+/// Axes of gears are parallel, and teeth move alike where they meet, up to this sine.
+const ALIKE: f64 = 1e-6;
+
+/// The fault of a coupling whose axes or place do not fit in the placement.
+pub(super) fn miscoupled(problem: &Problem) -> Option<Finding> {
+    let (document, start) = (&problem.written, problem.start_numbers());
+    let assembly = Assembly::new(document, &problem.order, &start);
+    let skew = |x: &Vec3<f64>, y: &Vec3<f64>| x.cross(y).norm() > ALIKE * x.norm() * y.norm();
+    document.couplings.iter().find_map(|(name, coupling)| {
+        let pointer = join(&join("/couplings", name), coupling.key());
+        let at =
+            |found: &str, expected: &str| Some(Finding::new(join(&pointer, "at"), found, expected));
+        let wheels = coupling.wheels();
+        let key = wheels.as_ref().map_or("pinion", |own| own.key);
+        let pair = wheels.and_then(|own| couplings::pair(document, &assembly, &own));
+        let turned = |wheel: &Wheel<f64>| {
+            let expected = "a body that turns about parallel axes on its carrier";
+            let found = "axes that are not parallel on the way to the carrier";
+            (wheel.skew > ALIKE).then(|| Finding::new(join(&pointer, key), found, expected))
+        };
+        if let Some(finding) = pair.iter().flatten().find_map(turned) {
+            return Some(finding);
+        }
+        match (coupling, pair) {
+            (Coupling::Gear(_) | Coupling::Belt(_), Some([a, b])) if skew(&a.axis, &b.axis) => {
+                let hint = "use \"bevel\" for gears whose axes meet";
+                let found = Finding::new(join(&pointer, key), "axes at an angle", "parallel axes");
+                Some(found.hint(Some(hint.to_owned())))
+            }
+            (Coupling::Bevel(own), _) => {
+                let [a, b] = couplings::bevel_paths(document, &assembly, (coupling, own))?;
+                let least = ALIKE * length_of(&assembly);
+                let expected = "a place in the plane of both axes, on neither";
+                match a.norm() <= least || b.norm() <= least {
+                    true => at("a place on an axis", expected),
+                    false if skew(&a, &b) => at("a place where the teeth move apart", expected),
+                    false => None,
+                }
+            }
+            (Coupling::RackAndPinion(own), _) => {
+                let rack = couplings::rack(document, &assembly, own)?;
+                let (along, path) = (rack.along, rack.path);
+                if let Some(finding) = turned(&rack.pinion) {
+                    return Some(finding);
+                }
+                let expected =
+                    "the point of the rack's pitch line that is nearest to the axis of the pinion";
+                match path.norm() <= ALIKE * length_of(&assembly) {
+                    true => at("a place on the axis", expected),
+                    false if skew(&path, &along) => {
+                        at("a place where the teeth move apart", expected)
+                    }
+                    false => None,
+                }
+            }
+            _ => None,
+        }
+    })
+}
+
+/// The largest distance of a body from the origin, or 1 \[m\].
+fn length_of(assembly: &Assembly<f64>) -> f64 {
+    let distances = assembly.poses.iter().map(|pose| pose.origin.norm());
+    match distances.fold(0.0, f64::max) {
+        0.0 => 1.0,
+        length => length,
+    }
 }
 
 /// The fault of a drive whose motion other joints and drives prescribe already.
@@ -88,7 +167,7 @@ pub(super) fn driven_twice(problem: &Problem) -> Option<Finding> {
     }
     let undriven = |names: &[&str]| {
         let mut model = model.clone();
-        let named = |joint: &&mut Joint<f64>| names.contains(&joint.name.as_str());
+        let named = |joint: &&mut ModelJoint<f64>| names.contains(&joint.name.as_str());
         model
             .joints
             .iter_mut()

@@ -54,6 +54,9 @@ fn joint<S: Scalar>(
         .axes()
         .map(|axis| axis.map(|axis| assembly.axis(axis)));
     let triad = match (axis, cross) {
+        (axis, Some(cross)) if matches!(written, WrittenJoint::Free(_)) => {
+            triad_with(unit(axis.unwrap_or(Vec3::z())), cross)
+        }
         (None, _) => triad(Vec3::z()),
         (Some(axis), None) => triad(axis),
         // e3 is fixed in body A, e1 in body B.

@@ -13,6 +13,7 @@ mod check;
 mod combined;
 mod composed;
 mod composing;
+mod couplings;
 mod data_file;
 mod data_text;
 mod derived;
@@ -543,6 +544,11 @@ impl Problem {
     /// Number of joints in the file.
     pub fn joint_count(&self) -> usize {
         self.written.joints.len()
+    }
+
+    /// How the last motion of each coupling follows the others in an unreduced model of the problem, for messages.
+    pub fn couplings(&self, model: &Model<f64>) -> Vec<String> {
+        couplings::described(&self.written, model)
     }
 
     /// The flexible bodies at the design `x`: their coordinates and natural frequencies.

@@ -13,8 +13,8 @@ use crate::quantity::Vector;
 use crate::schema::Document;
 use crate::schema::joints::{Ends, Joint};
 use crate::schema::loads::{
-    Axes as WrittenAxes, Contact as WrittenContact, Interpolation, Load as WrittenLoad, Motion,
-    Stop, Surface as WrittenSurface, TimeFunction as Written,
+    Axes as WrittenAxes, BushingEntries, Contact as WrittenContact, Interpolation,
+    Load as WrittenLoad, Motion, Stop, Surface as WrittenSurface, TimeFunction as Written,
 };
 use crate::structures::loads::edge_shares;
 use crate::structures::mesh::Edge;
@@ -89,6 +89,7 @@ fn kind<S: Scalar>(
             counter: None,
             rest_angle: get(&spring.rest_angle),
             stiffness: get(&spring.stiffness),
+            cubic: get(&spring.cubic),
             damping: get(&spring.damping),
         },
         WrittenLoad::Damping(damping) => {
@@ -101,6 +102,26 @@ fn kind<S: Scalar>(
                     coefficient,
                 },
                 None => LoadKind::BallDamping { joint, coefficient },
+            }
+        }
+        WrittenLoad::Bushing(bushing) => {
+            // The symmetric part, of which two equal numbers are halves.
+            let matrix = |entries: &BushingEntries| -> Vec<S> {
+                let at = |i: usize, k: usize| entries[i][k].map_or(S::zero(), get);
+                let rows = (0..6).flat_map(|i| (0..6).map(move |k| (i, k)));
+                let all = rows.map(|(i, k)| match i == k {
+                    true => at(i, k),
+                    false => (at(i, k) + at(k, i)) * 0.5,
+                });
+                all.collect()
+            };
+            LoadKind::Bushing {
+                joint: joint(document, &bushing.joint).0,
+                stiffness: matrix(&bushing.stiffness.entries()),
+                damping: match &bushing.damping {
+                    Some(damping) => matrix(&damping.entries()),
+                    None => vec![S::zero(); 36],
+                },
             }
         }
         WrittenLoad::Friction(friction) => {

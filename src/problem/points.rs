@@ -383,6 +383,7 @@ pub(super) fn beside(problem: &Problem) -> Option<Finding> {
                 Load::Force(_)
                 | Load::Torque(_)
                 | Load::TorsionSpring(_)
+                | Load::Bushing(_)
                 | Load::Friction(_)
                 | Load::Drag(_) => None,
             }

@@ -7,11 +7,12 @@ use serde_json::{Map, Value, json};
 use std::collections::HashSet;
 
 /// Sections with named entries that are independent of each other.
-const NAMED: [&str; 11] = [
+const NAMED: [&str; 12] = [
     "bodies",
     "joints",
     "loads",
     "drives",
+    "couplings",
     "structures",
     "materials",
     "load_cases",

@@ -1,5 +1,6 @@
 //! The functions of a scene from those of a problem file.
 
+use super::couplings::{Followed, observed};
 use super::flexible::{FlexibleBodies, Sections, station, stations};
 use super::loads::stopped;
 use super::placement::{Assembly, GROUND};
@@ -17,6 +18,7 @@ use crate::math::{Scalar, Vec3};
 use crate::model::{Axes, DegreeOfFreedom};
 use crate::quantity::vector;
 use crate::schema::Document;
+use crate::schema::couplings::OfCoupling;
 use crate::schema::functions::{self as written, CountedFrom, Function as Written, OfMotion};
 use crate::schema::loads::Load;
 use crate::schema::measured::{Bound as Side, JointReaction, ReactionAxes};
@@ -39,6 +41,8 @@ pub(super) struct FunctionBuilder<'a, S> {
     pub ends: Vec<(usize, Option<usize>)>,
     /// The axes of the joints on the first of them.
     pub frames: Vec<[Vec3<S>; 3]>,
+    /// By coupling: its motions.
+    pub coupled: Vec<Vec<Followed<S>>>,
     /// Vibrations about rest.
     pub vibrations: Vibrations<S>,
     /// The modes among them that are followed by their shapes.
@@ -240,6 +244,7 @@ impl<S: Scalar> FunctionBuilder<'_, S> {
             I::Slide(slide) => Instant::Slide(self.joint(&slide.joint)),
             I::JointForce(of) => self.reaction(of, WrenchPart::Force),
             I::JointMoment(of) => self.reaction(of, WrenchPart::Moment),
+            I::CouplingReaction(of) => self.coupling_reaction(of),
             I::SpringLength(of) => self.of_load(&of.load, LoadPart::Length),
             I::SpringForce(of) => self.of_load(&of.load, LoadPart::Tension),
             I::SpringTorque(of) => self.of_load(&of.load, LoadPart::Torque),
@@ -386,6 +391,24 @@ impl<S: Scalar> FunctionBuilder<'_, S> {
             part,
             axes,
             direction,
+        })
+    }
+
+    fn coupling_reaction(&self, of: &OfCoupling) -> Instant<S> {
+        let coupling = self.document.couplings.get_full(&of.coupling);
+        let (k, _, coupling) = coupling.expect("a function is of a coupling, which is checked");
+        let at = observed(coupling, of);
+        let own = &self.coupled[k]
+            [at.expect("a function is of a motion of a coupling, which is checked")];
+        Instant::Reaction(Wrench {
+            joint: own.joint,
+            on: End::A,
+            part: match own.dof {
+                DegreeOfFreedom::Rotation => WrenchPart::Moment,
+                DegreeOfFreedom::Translation => WrenchPart::Force,
+            },
+            axes: Axes::Body,
+            direction: own.axis,
         })
     }
 

@@ -10,7 +10,7 @@ use super::fault::Faults;
 use super::file_text::{self, Unread};
 use super::finding::Finding;
 use super::first_scene::{
-    collapsed, driven_twice, oblique, too_many, unassembled, unstarted, without_inertia,
+    collapsed, driven_twice, miscoupled, oblique, too_many, unassembled, unstarted, without_inertia,
 };
 use super::gmsh;
 use super::holds;
@@ -240,6 +240,7 @@ pub(super) fn single(
                 .or_else(|| unstarted(&problem))
                 .or_else(|| collapsed(&problem))
                 .or_else(|| oblique(&problem))
+                .or_else(|| miscoupled(&problem))
                 .or_else(|| points::beside(&problem))
                 .or_else(|| points::off_beams(&problem))
                 .or_else(|| points::off_points(&problem))

@@ -1,6 +1,7 @@
 //! The map from a design to a scene, analytic in the design.
 
 use super::aggregates::rho_of;
+use super::couplings;
 use super::flexible::{FlexibleBodies, HeldPlace};
 use super::loads::stopped;
 use super::mass::mass_properties;
@@ -15,6 +16,7 @@ use crate::math::{Scalar, Vec3};
 use crate::model::{DegreeOfFreedom, Mobility, Model, RigidBody};
 use crate::quantity::{Vector, vector};
 use crate::schema::Document;
+use crate::schema::couplings::{Relation, Term};
 use crate::schema::flexible::Start;
 use crate::schema::functions::OfMotion;
 use crate::schema::loads::Load;
@@ -22,10 +24,10 @@ use crate::schema::mechanics::{Body, Shape};
 use crate::schema::modes::DampingRatio;
 use crate::schema::statics::Frequency;
 use crate::structures::modes::BEYOND;
-use crate::system::Numbering;
 use crate::system::equilibrium::{Follow, Request, Turning, Vibrations, WantedModes, settle};
 use crate::system::failure::AssemblyFailure;
 use crate::system::placement::guess;
+use crate::system::{BodyMotion, Numbering, measures};
 
 /// Default gravity \[m/s²\].
 pub const GRAVITY: [f64; 3] = [0.0, -9.81, 0.0];
@@ -69,10 +71,13 @@ pub fn with_places<S: Scalar>(
         frames: (model.joints.iter())
             .map(|joint| joint.frame_a.axes)
             .collect(),
+        coupled: Vec::new(),
         vibrations: Vibrations::default(),
         followed: followed(document),
         x,
     };
+    let missed = |model: &Model<S>, own: &Relation| miss(&builder, model, own);
+    builder.coupled = couplings::couple(document, &assembly, &mut model, missed);
     count_turns(document, &builder, &mut model);
     if let (Some(sought), None) = (document.sought(), &unstarted) {
         let request = Request {
@@ -187,6 +192,33 @@ pub(super) fn turning<S: Scalar>(document: &Document, x: &[S]) -> Option<Turning
     })
 }
 
+/// By how much the placement misses the constant of a relation that has one.
+fn miss<S: Scalar>(builder: &FunctionBuilder<S>, model: &Model<S>, relation: &Relation) -> S {
+    let Some(constant) = &relation.constant else {
+        return S::zero();
+    };
+    let numbering = Numbering::new(model);
+    let (q, v) = guess(model);
+    let mut bodies = Vec::new();
+    BodyMotion::all(&numbering, &q, &v, &mut bodies);
+    let placed = |term: &Term| match (&term.turn, &term.slide) {
+        (Some(factor), _) => {
+            let rotation = builder.joint_angle(&term.joint);
+            let twist = rotation.angle(&numbering, &q);
+            let angle = twist + rotation.first_turns(twist.re());
+            builder.assembly.quantity(factor) * angle
+        }
+        (None, Some(factor)) => {
+            let joint = &model.joints[builder.joint(&term.joint)];
+            builder.assembly.quantity(factor) * measures::slide(joint, &bodies)
+        }
+        (None, None) => S::zero(),
+    };
+    let terms = relation.terms.iter();
+    let placed = terms.fold(S::zero(), |sum, term| sum + placed(term));
+    builder.assembly.quantity(constant) - placed
+}
+
 /// Gives torsion springs and stops of angles counters of their turns, which start as the angles of their joints do.
 fn count_turns<S: Scalar>(document: &Document, builder: &FunctionBuilder<S>, model: &mut Model<S>) {
     let numbering = Numbering::new(model);
@@ -254,7 +286,18 @@ fn start<S: Scalar>(
     let mut moved = model.clone();
     let found = starts.place(&mut moved).and_then(|()| {
         give(&mut moved);
-        start_rates::set(&starts, &mut moved)
+        if document.couplings.is_empty() {
+            return start_rates::set(&starts, &mut moved);
+        }
+        // Rates of joints move those that are coupled with them.
+        let mut coupled = moved.clone();
+        couplings::couple(document, assembly, &mut coupled, |_, _| S::zero());
+        start_rates::set(&starts.coupled(&coupled), &mut coupled)?;
+        for (body, found) in moved.bodies.iter_mut().zip(&coupled.bodies) {
+            body.velocity = found.velocity;
+            body.angular_velocity = found.angular_velocity;
+        }
+        Ok(())
     });
     match found {
         Ok(()) => *model = moved,

@@ -69,7 +69,9 @@ pub(super) fn starting_turn<S: Scalar>(
                     let angle = starting_angle(document, assembly, name).unwrap_or(0.0);
                     sign * own.dot(&axis).signum() * angle
                 }
-                Joint::Spherical(_) | Joint::Universal(_) | Joint::Rod(_) => continue,
+                Joint::Spherical(_) | Joint::Universal(_) | Joint::Rod(_) | Joint::Free(_) => {
+                    continue;
+                }
             };
             turned.insert(to, turned[at] + turn);
             next.push_back(to);

@@ -16,7 +16,9 @@ use super::hinge::{Hinge, Move, hinge, place};
 use super::placement::Assembly;
 use crate::math::rotation::{compose, conjugate, from_axis_angle, matrix};
 use crate::math::{Parameters, Scalar, Vec3};
-use crate::model::{DegreeOfFreedom, Drive, Joint, Mobility, Model, RigidBody, TimeFunction};
+use crate::model::{
+    DegreeOfFreedom, Drive, Joint, Mobility, Model, Modes, RigidBody, TimeFunction,
+};
 use crate::quantity::Quantity;
 use crate::schema::Document;
 use crate::schema::flexible::Start;
@@ -35,6 +37,9 @@ const MOST_TURN: f64 = 1.25;
 /// Drives that start beyond this angle \[rad\] turn their bodies as a start of the joint does. Nearer ones are closed by
 /// the assembly.
 const QUARTER: f64 = std::f64::consts::FRAC_PI_2;
+
+/// A part has them.
+const OWN: &str = "a part has the bodies of its joints";
 
 /// Both degrees of freedom of a joint.
 pub(super) const DOFS: [DegreeOfFreedom; 2] =
@@ -57,6 +62,7 @@ pub(super) enum Asked {
 }
 
 /// The starts of the joints of a scene.
+#[derive(Clone, Debug)]
 pub struct Starts<S> {
     given: Vec<Given<S>>,
     pub(super) blocks: Blocks,
@@ -84,19 +90,25 @@ impl<S: Scalar> Starts<S> {
         if given.is_empty() {
             return None;
         }
-        let ends: Vec<_> = (model.joints.iter())
-            .map(|joint| (joint.body_a, joint.body_b))
-            .collect();
         let moving = |body: &crate::schema::mechanics::Body| {
             body.velocity.is_some() || document.initial_velocity.is_some()
         };
         let joints = document.joints.values();
         Some(Self {
             given,
-            blocks: Blocks::new(model.bodies.len(), &ends),
+            blocks: Blocks::of(model),
             closed: joints.map(|joint| closes(document, joint)).collect(),
             moving: document.bodies.values().map(moving).collect(),
         })
+    }
+
+    /// The same starts of a model whose joints are coupled as placed.
+    pub fn coupled(&self, model: &Model<S>) -> Self {
+        let mut own = self.clone();
+        own.blocks = Blocks::of(model);
+        own.closed.resize(model.joints.len(), false);
+        own.moving.resize(model.bodies.len(), false);
+        own
     }
 
     /// Value that the file or a drive prescribes for a joint.
@@ -279,8 +291,15 @@ impl<S: Scalar> Starts<S> {
         let joint = |&joint: &usize| {
             let joint = &model.joints[joint];
             Joint {
-                body_a: number(joint.body_a).expect("a part has the bodies of its joints"),
+                body_a: number(joint.body_a).expect(OWN),
                 body_b: joint.body_b.and_then(number),
+                modes: joint.modes.as_ref().map(|modes| {
+                    let place = |&(body, k): &(usize, usize)| (number(body).expect(OWN), k);
+                    Modes {
+                        places: modes.places.iter().map(place).collect(),
+                        ..modes.clone()
+                    }
+                }),
                 ..joint.clone()
             }
         };

@@ -11,10 +11,11 @@ use serde_json::{Value, json};
 use std::collections::BTreeSet;
 
 /// Sections without a part in the mass.
-const WITHOUT_MASS: [&str; 7] = [
+const WITHOUT_MASS: [&str; 8] = [
     "gravity",
     "loads",
     "drives",
+    "couplings",
     "simulation",
     "load_cases",
     "modes",

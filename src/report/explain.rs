@@ -20,6 +20,9 @@ pub struct Explanation {
     pub joints: usize,
     /// See above.
     pub loads: usize,
+    /// The couplings: how the last motion of each follows the others.
+    #[serde(skip_serializing_if = "Vec::is_empty")]
+    pub couplings: Vec<String>,
     /// The flexible bodies: their coordinates and natural frequencies.
     #[serde(skip_serializing_if = "Vec::is_empty")]
     pub flexible: Vec<String>,
@@ -158,6 +161,7 @@ impl Explanation {
             self.name, self.bodies, self.joints, self.loads
         );
         for (title, lines) in [
+            ("couplings", &self.couplings),
             ("flexible bodies", &self.flexible),
             (RICHER, &self.bases),
             ("left out", &self.left_out),

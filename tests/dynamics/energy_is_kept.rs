@@ -46,6 +46,7 @@ fn scene(seed: u64, unit: f64) -> (Model<f64>, f64) {
                 counter: None,
                 rest_angle: 0.3 * numbers.next(),
                 stiffness,
+                cubic: 0.3 * stiffness,
                 damping: 0.0,
             },
             _ => LoadKind::Spring {

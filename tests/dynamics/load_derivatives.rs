@@ -86,6 +86,7 @@ fn kinds(body_b: Option<usize>, numbers: &mut Numbers) -> Vec<(JointKind, LoadKi
             counter: None,
             rest_angle: 2.5,
             stiffness: 1.3,
+            cubic: 0.7,
             damping,
         };
         all.extend([(Spherical, spring), (Revolute, torsion)]);

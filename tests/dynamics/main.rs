@@ -9,11 +9,13 @@ mod numbers;
 mod reference;
 
 mod allocations;
+mod bushings;
 mod checkpoints;
 mod conserves;
 mod constraint_derivatives;
 mod contacts;
 mod counted_turns;
+mod couplings;
 mod dead_points;
 mod distributed_loads;
 mod drive_gradients;

@@ -124,6 +124,7 @@ fn pair(kind: JointKind, seed: u64, driven: bool) -> Model<f64> {
                 counter: None,
                 rest_angle: 0.4,
                 stiffness: 3.0,
+                cubic: 0.8,
                 damping: 0.2,
             },
         });

@@ -242,6 +242,7 @@ fn vibration(model: &Model<f64>, load: &LoadKind<f64>) -> Option<(f64, f64)> {
         | LoadKind::Torque { .. }
         | LoadKind::Damping { .. }
         | LoadKind::BallDamping { .. }
+        | LoadKind::Bushing { .. }
         | LoadKind::Friction { .. }
         | LoadKind::Drag { .. }
         // They vibrate only while they touch, where the error of the steps sees it.

@@ -250,7 +250,15 @@ impl Ledger {
                 let square = scale.length * scale.length;
                 0.5 * square * (stiffness.re().abs() + 0.5 * cubic.re().abs() * square)
             }
-            LoadKind::TorsionSpring { stiffness, .. } => 0.5 * stiffness.re().abs(),
+            LoadKind::TorsionSpring {
+                stiffness, cubic, ..
+            } => 0.5 * (stiffness.re().abs() + 0.5 * cubic.re().abs()),
+            LoadKind::Bushing { stiffness, .. } => {
+                let size = |i: usize| if i < 3 { scale.length } else { 1.0 };
+                let entries = stiffness.iter().enumerate();
+                let entries = entries.map(|(i, k)| k.re().abs() * size(i / 6) * size(i % 6));
+                0.5 * entries.sum::<f64>()
+            }
             LoadKind::JointStop { dof, law, .. } => match dof {
                 DegreeOfFreedom::Rotation => stored(law, 1.0),
                 DegreeOfFreedom::Translation => stored(law, scale.length),

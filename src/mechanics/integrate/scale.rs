@@ -3,7 +3,7 @@
 //! Positions, rotations and velocities of bodies count component by component. The elastic
 //! coordinates of a flexible body count as the three components of one displacement, its mean over
 //! the mass. So many coordinates do not hide the joints, and coordinates of any unit count by the
-//! displacement that they cause.
+//! displacement that they cause. Those of couplings do not count, as the bodies that follow them do.
 
 use crate::math::Scalar;
 use crate::model::Model;
@@ -27,7 +27,7 @@ pub struct Scale {
 pub struct Elastic {
     /// By flexible body.
     displacements: Vec<MeanSquare>,
-    /// By body: whether it carries elastic coordinates; empty if none does.
+    /// By body: whether it carries coordinates of a flexible body or a coupling; empty if none does.
     carries: Vec<bool>,
     /// Number of components that count, of positions and velocities.
     components: [usize; 2],
@@ -40,8 +40,12 @@ impl Elastic {
     fn of<S: Scalar>(model: &Model<S>) -> Self {
         let displacements = MeanSquare::all(model);
         let mut carries = Vec::new();
-        if !displacements.is_empty() {
+        if !displacements.is_empty() || model.is_coupled() {
             carries.resize(model.bodies.len(), false);
+        }
+        // The bodies of coupled joints count themselves.
+        for body in model.coordinates() {
+            carries[body] = true;
         }
         for body in displacements.iter().flat_map(MeanSquare::carriers) {
             carries[body] = true;

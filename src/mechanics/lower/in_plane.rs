@@ -6,7 +6,7 @@ use super::fixed::is_void;
 use super::planar::{Plane, Turned, points, used};
 use crate::math::scalar::{along, lift3};
 use crate::math::{Scalar, Vec3};
-use crate::model::{Axes, DegreeOfFreedom, Form, LoadKind, Model};
+use crate::model::{Axes, DegreeOfFreedom, Form, JointKind, LoadKind, Model};
 
 /// The largest angular velocity of the bodies \[rad/s\], by value or by a `change` of the variable.
 /// Speeds count by their ratio to the body's length. The round-off of a slow body scales with it.
@@ -55,7 +55,8 @@ fn shapes<S: Scalar>(model: &Model<S>, turned: &Turned<S>, examiner: &mut Condit
         }
     }
     for joint in &model.joints {
-        let Some(modes) = &joint.modes else { continue };
+        let modes = joint.modes.as_ref().filter(|_| !joint.is_coupled());
+        let Some(modes) = modes else { continue };
         let (name, n) = (&joint.name, turned.normals[joint.body_a]);
         let what = || {
             (
@@ -197,12 +198,16 @@ impl Plane {
                     }
                 }
             }
-            for drive in &joint.drives {
+            let coupled = match joint.kind {
+                JointKind::Coupled(dof) => Some(dof),
+                _ => None,
+            };
+            for dof in joint.drives.iter().map(|drive| drive.dof).chain(coupled) {
                 let normal = turned.normal(Some(joint.body_a));
                 let e = &frames[0].axes[2];
                 let part = normal.dot(e);
-                let what = || (format!("joint \"{name}\" is driven out of the plane"), "");
-                match drive.dof {
+                let what = || (format!("joint \"{name}\" is moved out of the plane"), "");
+                match dof {
                     DegreeOfFreedom::Rotation => {
                         examiner.vanishes((e - normal * part).as_slice(), 1.0, what);
                     }
@@ -315,8 +320,10 @@ impl Plane {
                         examiner.zero(n.dot(direction), largest(direction), what);
                     }
                 }
-                // Flexible bodies that carry it have no plane but by chance, which is not looked for.
-                LoadKind::Distributed(_) => examiner.zero(S::one(), 1.0, what),
+                // Flexible bodies that carry it, and stiffnesses, have no plane but by chance, which is not looked for.
+                LoadKind::Distributed(_) | LoadKind::Bushing { .. } => {
+                    examiner.zero(S::one(), 1.0, what)
+                }
                 LoadKind::Spring { .. }
                 | LoadKind::Drag { .. }
                 | LoadKind::BallDamping { .. }

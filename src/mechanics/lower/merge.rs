@@ -263,6 +263,7 @@ fn move_load<S: Scalar>(kind: &mut LoadKind<S>, on_host: &[Option<Pose<S>>]) {
         LoadKind::TorsionSpring { .. }
         | LoadKind::Damping { .. }
         | LoadKind::BallDamping { .. }
+        | LoadKind::Bushing { .. }
         | LoadKind::Friction { .. }
         | LoadKind::JointStop { .. } => {}
         // It acts on a flexible body, and these are not merged.

@@ -44,7 +44,9 @@ pub(super) fn candidates(model: &Model<f64>) -> Vec<Vec3<f64>> {
         | JointKind::Universal
         | JointKind::Rod
         | JointKind::Weld
-        | JointKind::Attachment => false,
+        | JointKind::Free
+        | JointKind::Attachment
+        | JointKind::Coupled(_) => false,
     };
     let joints = model.joints.iter().filter(turns);
     let mut axes: Vec<(usize, Vec3<f64>)> = Vec::new();
@@ -154,6 +156,7 @@ fn vectors(model: &Model<f64>) -> (Vec<Vec3<f64>>, Vec<Vec3<f64>>) {
             LoadKind::TorsionSpring { .. }
             | LoadKind::Damping { .. }
             | LoadKind::BallDamping { .. }
+            | LoadKind::Bushing { .. }
             | LoadKind::Friction { .. }
             | LoadKind::JointStop { .. }
             | LoadKind::Distributed(_) => {}

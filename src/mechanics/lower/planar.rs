@@ -339,6 +339,7 @@ pub(super) fn points<S: Scalar>(kind: &LoadKind<S>) -> [Option<(Option<usize>, V
         | LoadKind::TorsionSpring { .. }
         | LoadKind::Damping { .. }
         | LoadKind::BallDamping { .. }
+        | LoadKind::Bushing { .. }
         | LoadKind::Friction { .. }
         | LoadKind::JointStop { .. }
         | LoadKind::Distributed(_) => [None, None],

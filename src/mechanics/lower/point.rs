@@ -47,6 +47,7 @@ pub(super) fn holds<S: Scalar>(
         for (_, frame) in sides.iter().filter(|(body, _)| body.is_some_and(is)) {
             let name = &joint.name;
             match joint.kind {
+                JointKind::Free => {}
                 JointKind::Spherical | JointKind::Rod => {
                     let what = || format!("joint \"{name}\" is off its centre of mass");
                     vanishes(Some(&frame.point), &what);
@@ -57,7 +58,8 @@ pub(super) fn holds<S: Scalar>(
                 | JointKind::Cylindrical
                 | JointKind::Universal
                 | JointKind::Weld
-                | JointKind::Attachment => {
+                | JointKind::Attachment
+                | JointKind::Coupled(_) => {
                     vanishes(None, &|| format!("joint \"{name}\" turns it"));
                 }
             }
@@ -109,6 +111,7 @@ pub(super) fn holds<S: Scalar>(
             LoadKind::TorsionSpring { joint, .. }
             | LoadKind::Damping { joint, .. }
             | LoadKind::BallDamping { joint, .. }
+            | LoadKind::Bushing { joint, .. }
             | LoadKind::Friction { joint, .. }
             | LoadKind::JointStop { joint, .. } => {
                 let joint = &model.joints[*joint];

@@ -76,8 +76,8 @@ impl Seen {
                 seen[body] = true;
             }
         }
-        // The duration depends on no body, but a scene needs one. No joint joins carriers.
-        if !seen.contains(&true) || !model.flexible.is_empty() {
+        // The duration depends on no body, but a scene needs one. No joint joins carriers, and a coupling joins its joints.
+        if !seen.contains(&true) || !model.flexible.is_empty() || model.is_coupled() {
             seen.fill(true);
         }
         let all = 0..model.bodies.len();
@@ -208,6 +208,7 @@ fn leave_out<S: Scalar>(model: &mut Model<S>, number: &[Option<usize>]) -> [Vec<
             }
             LoadKind::Damping { joint, .. }
             | LoadKind::BallDamping { joint, .. }
+            | LoadKind::Bushing { joint, .. }
             | LoadKind::Friction { joint, .. } => new_joint(joint),
         }
     }

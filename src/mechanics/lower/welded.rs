@@ -145,6 +145,7 @@ impl Welded {
                     | LoadKind::TorsionSpring { .. }
                     | LoadKind::Damping { .. }
                     | LoadKind::BallDamping { .. }
+                    | LoadKind::Bushing { .. }
                     | LoadKind::Friction { .. }
                     | LoadKind::Drag { .. }
                     | LoadKind::JointStop { .. }

@@ -112,6 +112,9 @@ pub struct BeamSection {
 
 /// How an attachment's frame moves with the elastic coordinates: in the axes of the body, its point at
 /// s = X + Σ q_I N_I, and its axes at e + Σ q_I Θ_I × e. X and e are the joint's frame A.
+///
+/// Of a coupled joint N_I and Θ_I are along e3, in the axes of its frame B, which they shift along e3 and turn about it
+/// by any angle (see [`super::coupling`]).
 #[derive(Clone, Debug)]
 pub struct Modes<S> {
     /// The body that carries each coordinate that moves it, and the component of its position.

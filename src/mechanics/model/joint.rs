@@ -130,8 +130,13 @@ pub enum JointKind {
     Rod,
     /// Two bodies move as one: 6 rows.
     Weld,
+    /// Two bodies move freely: no row. Its frames are those of a bushing.
+    Free,
     /// Body B is the interface of a point of the flexible body whose frame is body A: 6 rows.
     Attachment,
+    /// A rotation or displacement of another joint that follows the coordinates of a coupling: 1 row (see
+    /// [`super::coupling`]).
+    Coupled(DegreeOfFreedom),
 }
 
 use ConstraintRow::{Coincident, Distance, Perpendicular, Sliding};
@@ -173,6 +178,7 @@ impl JointKind {
                 Perpendicular { a: 2, b: 0 },
             ],
             JointKind::Rod => &[Distance],
+            JointKind::Free => &[],
             JointKind::Weld | JointKind::Attachment => &[
                 Coincident(0),
                 Coincident(1),
@@ -181,6 +187,8 @@ impl JointKind {
                 Perpendicular { a: 1, b: 2 },
                 Perpendicular { a: 2, b: 0 },
             ],
+            JointKind::Coupled(DegreeOfFreedom::Rotation) => &[Perpendicular { a: 0, b: 1 }],
+            JointKind::Coupled(DegreeOfFreedom::Translation) => &[Sliding { a: 2 }],
         }
     }
 
@@ -194,16 +202,24 @@ impl JointKind {
             | JointKind::Universal
             | JointKind::Rod
             | JointKind::Weld
-            | JointKind::Attachment => &[],
+            | JointKind::Free
+            | JointKind::Attachment
+            | JointKind::Coupled(_) => &[],
         }
     }
 
     /// Frame axes that both bodies share. The rows alone would also admit a rotation by 180°.
     pub fn common_axes(self) -> &'static [usize] {
         match self {
-            JointKind::Spherical | JointKind::Universal | JointKind::Rod => &[],
-            JointKind::Revolute | JointKind::Planar | JointKind::Cylindrical => &[2],
-            JointKind::Prismatic | JointKind::Weld | JointKind::Attachment => &[0, 1, 2],
+            JointKind::Spherical | JointKind::Universal | JointKind::Rod | JointKind::Free => &[],
+            JointKind::Revolute
+            | JointKind::Planar
+            | JointKind::Cylindrical
+            | JointKind::Coupled(DegreeOfFreedom::Translation) => &[2],
+            JointKind::Coupled(DegreeOfFreedom::Rotation)
+            | JointKind::Prismatic
+            | JointKind::Weld
+            | JointKind::Attachment => &[0, 1, 2],
         }
     }
 
@@ -218,7 +234,9 @@ impl JointKind {
             JointKind::Universal => "universal",
             JointKind::Rod => "rod",
             JointKind::Weld => "weld",
+            JointKind::Free => "free",
             JointKind::Attachment => "attachment",
+            JointKind::Coupled(_) => "coupled",
         }
     }
 }
@@ -279,7 +297,8 @@ pub struct Joint<S> {
     /// Trivially satisfied rows: they hold in all motions that the bodies' mobility admits, and are
     /// not imposed.
     pub trivial_rows: Vec<ConstraintRow>,
-    /// How the frame on body A moves with its elastic coordinates; of attachments only.
+    /// How a frame moves with coordinates: that on body A with those of a flexible body, of attachments; that on
+    /// body B with those of a coupling, of coupled joints.
     pub modes: Option<Modes<S>>,
 }
 
@@ -293,6 +312,11 @@ pub struct Fit {
 }
 
 impl<S> Joint<S> {
+    /// Whether it is a motion of another joint that follows the coordinates of a coupling.
+    pub fn is_coupled(&self) -> bool {
+        matches!(self.kind, JointKind::Coupled(_))
+    }
+
     /// The rows of the kind and of the drives.
     pub fn all_rows(&self) -> impl Iterator<Item = ConstraintRow> + Clone + '_ {
         let driven = self.drives.iter().map(|drive| drive.dof.driven_row());

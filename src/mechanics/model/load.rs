@@ -8,9 +8,10 @@
 //! force              F = m(t) n              at a point; n in ground or in body axes
 //! torque             M = m(t) n              n in ground or in body axes
 //! spring             F = −(k x + k3 x³ + c l̇) d / l,    x = l − l0
-//! torsion spring     M = −(k x + c φ̇) e,                x = φ − φ0
+//! torsion spring     M = −(k x + k3 x³ + c φ̇) e,         x = φ − φ0
 //! damping            M = −c φ̇ e   or   F = −c ṡ e
 //! ball damping       M = −c (ω_A − ω_B)
+//! bushing            (F, M) = −(K x + C ẋ),             x the relative displacement and rotation of two frames
 //! friction           M = −μ tanh(φ̇ / w) e   or   F = −μ tanh(ṡ / w) e
 //! drag               F = −c |u|² u / √(|u|² + w²),           u = ṙ of a point
 //! joint stop         M = (N(φ_l − φ, −φ̇) − N(φ − φ_u, φ̇)) e   or   F likewise with s
@@ -96,6 +97,8 @@ pub enum LoadKind<S> {
         rest_angle: S,
         /// Stiffness k \[N m/rad\].
         stiffness: S,
+        /// Cubic stiffness k3 \[N m/rad³\].
+        cubic: S,
         /// Damping c \[N m s/rad\].
         damping: S,
     },
@@ -114,6 +117,15 @@ pub enum LoadKind<S> {
         joint: usize,
         /// c \[N m s/rad\].
         coefficient: S,
+    },
+    /// Linear elastic forces and torques of all relative motion of the frames of a joint, with damping.
+    Bushing {
+        /// The joint.
+        joint: usize,
+        /// K by rows, symmetric, of displacements along e1, e2, e3 and rotations about them; 36 numbers \[N/m, N, N m\].
+        stiffness: Vec<S>,
+        /// C likewise \[N s/m, N s, N m s\].
+        damping: Vec<S>,
     },
     /// Coulomb friction of constant size along or about the axis of a joint. It is smooth at rate
     /// zero.
@@ -178,9 +190,10 @@ parameters!(enum LoadKind {
     Force { body, axes; point, direction, magnitude },
     Torque { body, axes; direction, magnitude },
     Spring { body_a, body_b; point_a, point_b, rest_length, stiffness, cubic, damping },
-    TorsionSpring { joint, counter; rest_angle, stiffness, damping },
+    TorsionSpring { joint, counter; rest_angle, stiffness, cubic, damping },
     Damping { joint, dof; coefficient },
     BallDamping { joint; coefficient },
+    Bushing { joint; stiffness, damping },
     Friction { joint, dof; size, width },
     Drag { body; point, coefficient, width },
     JointStop { joint, dof, counter; limits, law },
@@ -201,6 +214,7 @@ impl<S: Scalar> LoadKind<S> {
             | LoadKind::TorsionSpring { .. }
             | LoadKind::Damping { .. }
             | LoadKind::BallDamping { .. }
+            | LoadKind::Bushing { .. }
             | LoadKind::Friction { .. }
             | LoadKind::Drag { .. }
             | LoadKind::JointStop { .. }
@@ -217,6 +231,7 @@ impl<S> LoadKind<S> {
             LoadKind::TorsionSpring { joint, .. }
             | LoadKind::Damping { joint, .. }
             | LoadKind::BallDamping { joint, .. }
+            | LoadKind::Bushing { joint, .. }
             | LoadKind::Friction { joint, .. }
             | LoadKind::JointStop { joint, .. } => Some(*joint),
             LoadKind::Force { .. }
@@ -242,6 +257,7 @@ impl<S> LoadKind<S> {
             LoadKind::TorsionSpring { joint, .. }
             | LoadKind::Damping { joint, .. }
             | LoadKind::BallDamping { joint, .. }
+            | LoadKind::Bushing { joint, .. }
             | LoadKind::Friction { joint, .. }
             | LoadKind::JointStop { joint, .. } => {
                 let joint = &joints[*joint];
@@ -261,6 +277,7 @@ impl<S> LoadKind<S> {
             | LoadKind::Spring { .. }
             | LoadKind::Damping { .. }
             | LoadKind::BallDamping { .. }
+            | LoadKind::Bushing { .. }
             | LoadKind::Friction { .. }
             | LoadKind::Drag { .. }
             | LoadKind::DistanceStop { .. }

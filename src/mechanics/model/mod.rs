@@ -6,6 +6,7 @@
 
 pub mod axes;
 pub mod contact;
+pub mod coupling;
 pub mod distributed;
 pub mod drive;
 pub mod element_operators;
@@ -24,6 +25,7 @@ pub mod time_function;
 
 pub use axes::Axes;
 pub use contact::{Contact, Surface};
+pub use coupling::CoupledMotion;
 pub use distributed::{DistributedLoad, Spread};
 pub use drive::{DegreeOfFreedom, Drive};
 pub use flexible::{FlexibleBody, Form, Inertia, Modes};
@@ -42,9 +44,10 @@ use crate::math::{Scalar, Vec3, parameters, rotation};
 pub struct Model<S> {
     /// Gravitational acceleration in ground axes \[m/s²\].
     pub gravity: Vec3<S>,
-    /// Bodies in the order of the problem file, then those without mass that flexible bodies, torsion springs and stops need.
+    /// Bodies in the order of the problem file, then those without mass that flexible bodies, couplings, torsion springs and
+    /// stops need.
     pub bodies: Vec<RigidBody<S>>,
-    /// Joints in the order of the problem file, then the attachments of flexible bodies.
+    /// Joints in the order of the problem file, then the attachments of flexible bodies and the coupled motions.
     pub joints: Vec<Joint<S>>,
     /// Loads in the order of the problem file.
     pub loads: Vec<Load<S>>,
@@ -76,6 +79,7 @@ impl<S: Scalar> Model<S> {
             LoadKind::Damping { coefficient, .. }
             | LoadKind::BallDamping { coefficient, .. }
             | LoadKind::Drag { coefficient, .. } => coefficient.re() == 0.0,
+            LoadKind::Bushing { damping, .. } => damping.iter().all(|x| x.re() == 0.0),
             LoadKind::Friction { size, .. } => size.re() == 0.0,
             LoadKind::JointStop { law, .. } | LoadKind::DistanceStop { law, .. } => {
                 law.dissipation.re() == 0.0
@@ -104,10 +108,15 @@ impl<S: Scalar> Model<S> {
         rounded.fold(0.0, |slack, joint| slack.max(joint.fit.tolerance))
     }
 
-    /// Whether a body carries elastic coordinates or counts turns.
+    /// Whether a body carries elastic coordinates, the coordinate of a coupling, or counts turns.
     pub fn is_carrier(&self, body: usize) -> bool {
         let mut all = self.flexible.iter();
-        all.any(|flexible| flexible.carriers().contains(&body)) || self.is_counter(body)
+        all.any(|flexible| flexible.carriers().contains(&body)) || self.holds_angles(body)
+    }
+
+    /// Whether the position of a body is no place: it counts turns or is the coordinate of a coupling.
+    pub fn holds_angles(&self, body: usize) -> bool {
+        self.is_counter(body) || self.is_coordinate(body)
     }
 
     /// Whether a body counts the turns of a torsion spring or a stop.
@@ -138,7 +147,8 @@ impl<S: Scalar> Model<S> {
 
     /// Whether a body stands for a point of a flexible body.
     pub fn is_interface(&self, body: usize) -> bool {
-        let of = |joint: &Joint<S>| joint.modes.is_some() && joint.body_b == Some(body);
+        let of =
+            |joint: &Joint<S>| joint.kind == JointKind::Attachment && joint.body_b == Some(body);
         self.joints.iter().any(of)
     }
 

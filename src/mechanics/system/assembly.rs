@@ -232,13 +232,14 @@ fn check_turned<S: Scalar>(
     }
 }
 
-/// A driven joint at the spurious solution of its rows, in which a frame is turned by 180°, with
+/// A driven or coupled joint at the spurious solution of its rows, in which a frame is turned by 180°, with
 /// the motions and the time `at`. Steps of half a turn lead there.
 pub fn turned<'a, S: Scalar>(
     model: &'a Model<S>,
     at: (&[BodyMotion<S>], S),
 ) -> Option<&'a Joint<S>> {
-    let driven = model.joints.iter().filter(|joint| !joint.drives.is_empty());
+    let turns = |joint: &&Joint<S>| !joint.drives.is_empty() || joint.is_coupled();
+    let driven = model.joints.iter().filter(turns);
     driven.into_iter().find(|joint| is_turned(joint, at))
 }
 

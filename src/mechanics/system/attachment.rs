@@ -13,8 +13,21 @@ use super::numbering::Numbering;
 use crate::math::{Scalar, Vec3};
 use crate::model::{Joint, JointFrame, Modes};
 
+/// A vector of the motion of a body.
+pub(super) type Part<S> = fn(&BodyMotion<S>) -> Vec3<S>;
+
+/// Position, velocity, acceleration and virtual velocity.
+pub(super) fn parts<S: Scalar>() -> [Part<S>; 4] {
+    [
+        |x| x.position,
+        |x| x.velocity,
+        |x| x.acceleration,
+        |x| x.virtual_velocity,
+    ]
+}
+
 /// Σ x_I N_I and Σ x_I Θ_I with x a vector of each carrier.
-fn sums<S: Scalar>(
+pub(super) fn sums<S: Scalar>(
     modes: &Modes<S>,
     motions: &[BodyMotion<S>],
     of: impl Fn(&BodyMotion<S>) -> Vec3<S>,
@@ -99,30 +112,42 @@ pub fn pull_frame(
     (joint, modes): (&Joint<f64>, &Modes<f64>),
     (numbering, motions): (&Numbering, &[BodyMotion<f64>]),
     (by_frame, by_motion): (&JointFrame<f64>, &FrameMotion<f64>),
-    (mut y, mut v): (Option<&mut [f64]>, Option<&mut [f64]>),
+    states: (Option<&mut [f64]>, Option<&mut [f64]>),
     own: &mut Joint<f64>,
 ) {
-    type Part = fn(&BodyMotion<f64>) -> Vec3<f64>;
-    let frame = &joint.frame_a;
-    let parts: [(&JointFrame<f64>, Part); 4] = [
-        (by_frame, |x| x.position),
-        (&by_motion.rate, |x| x.velocity),
-        (&by_motion.acceleration, |x| x.acceleration),
-        (&by_motion.virtual_rate, |x| x.virtual_velocity),
+    let all = [
+        by_frame,
+        &by_motion.rate,
+        &by_motion.acceleration,
+        &by_motion.virtual_rate,
     ];
     own.frame_a.add(by_frame);
-    for (i, (by, of)) in parts.into_iter().enumerate() {
+    for (by, of) in all.into_iter().zip(parts()) {
         let turned = sums(modes, motions, of).1;
         // f · (θ × e) = e · (f × θ).
         for (axis, f) in own.frame_a.axes.iter_mut().zip(&by.axes) {
             *axis += f.cross(&turned);
         }
-        let torque = moment(frame, by);
+    }
+    let by = all.map(|by| (by.point, moment(&joint.frame_a, by)));
+    pull_coordinates(modes, (numbering, motions), &by, states, own);
+}
+
+/// Pulls cotangents of Σ x_I N_I and Σ x_I Θ_I, for each of [`parts`], back to tangent positions and velocities, where these
+/// are wanted, and to the modes of a joint (added to `own`).
+pub(super) fn pull_coordinates(
+    modes: &Modes<f64>,
+    (numbering, motions): (&Numbering, &[BodyMotion<f64>]),
+    by: &[(Vec3<f64>, Vec3<f64>); 4],
+    (mut y, mut v): (Option<&mut [f64]>, Option<&mut [f64]>),
+    own: &mut Joint<f64>,
+) {
+    for (i, (&(force, torque), of)) in by.iter().zip(parts()).enumerate() {
         let Some(cot) = &mut own.modes else { continue };
         let places = (modes.places.iter()).zip(cot.displacement.iter_mut().zip(&mut cot.rotation));
         for (&(carrier, k), (n, t)) in places {
             let x = of(&motions[carrier])[k];
-            *n += by.point * x;
+            *n += force * x;
             *t += torque * x;
         }
         let state = match i {
@@ -131,7 +156,7 @@ pub fn pull_frame(
             _ => None,
         };
         if let Some(state) = state {
-            for (slot, x) in elastic_gradient(modes, numbering, (by.point, torque)) {
+            for (slot, x) in elastic_gradient(modes, numbering, (force, torque)) {
                 state[slot] += x;
             }
         }

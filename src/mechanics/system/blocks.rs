@@ -4,6 +4,9 @@
 //!
 //! If no joints lead from ground to some bodies, the first of these takes the place of ground.
 
+use crate::math::Scalar;
+use crate::model::Model;
+
 /// A joint that lies in no loop, or a network of loops.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct Block {
@@ -25,6 +28,23 @@ pub struct Blocks {
 }
 
 impl Blocks {
+    /// The blocks of a model. A coupling is a loop through the bodies of its joints and the carriers of its coordinates.
+    pub fn of<S: Scalar>(model: &Model<S>) -> Self {
+        let joints = model.joints.iter();
+        let mut ends: Vec<_> = joints.map(|joint| (joint.body_a, joint.body_b)).collect();
+        for tie in model.ties() {
+            // Ground is the least.
+            let next = tie.iter().skip(1).chain(&tie[..1]);
+            let sides = tie.iter().zip(next).map(|(&a, &b)| (a.max(b), a.min(b)));
+            ends.extend(sides.filter_map(|(a, b)| Some((a?, b))));
+        }
+        let mut blocks = Self::new(model.bodies.len(), &ends);
+        for block in &mut blocks.list {
+            block.joints.retain(|&joint| joint < model.joints.len());
+        }
+        blocks
+    }
+
     /// The blocks of `bodies` bodies and of joints with the given `ends`; `None` is ground.
     pub fn new(bodies: usize, ends: &[(usize, Option<usize>)]) -> Self {
         let tree = Tree::new(bodies, ends);

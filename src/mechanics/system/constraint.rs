@@ -97,9 +97,10 @@ pub struct RowGradient<S> {
     pub torque_a: Vec3<S>,
     /// In ω_B (body axes of B).
     pub torque_b: Vec3<S>,
-    /// By the rate of the point on body A (body axes), if the body deforms under the joint.
+    /// By the rate of the point on body A (body axes), if the body deforms under the joint; by that of the frame on body B
+    /// (its axes), if it follows a coupling.
     pub local_force: Vec3<S>,
-    /// By the rate of the section's rotation on body A (body axes) likewise.
+    /// By the rate of the section's rotation on body A (body axes), or by that of the frame, likewise.
     pub local_torque: Vec3<S>,
 }
 
@@ -143,6 +144,25 @@ fn local_gradient<S: Scalar>(
     }
 }
 
+/// Derivatives of the rate of a row by the speed of frame B along e3 and by its spin about it, in the axes of the frame.
+fn followed_gradient<S: Scalar>(
+    row: ConstraintRow,
+    a: &JointSide<S>,
+    b: &JointSide<S>,
+) -> (Vec3<S>, Vec3<S>) {
+    let along = |x: S| Vec3::new(S::zero(), S::zero(), x);
+    let e3 = b.axis(2);
+    match row {
+        Perpendicular { a: i, b: j } => {
+            let spin = a.axis(i).dot(&e3.cross(&b.axis(j)));
+            (Vec3::zeros(), along(spin))
+        }
+        Sliding { a: i } => (along(-a.axis(i).dot(&e3)), Vec3::zeros()),
+        // No coupled joint has such a row.
+        Coincident(_) | Distance => (Vec3::zeros(), Vec3::zeros()),
+    }
+}
+
 /// Gradient of a row.
 pub fn gradient<S: Scalar>(
     row: ConstraintRow,
@@ -154,6 +174,8 @@ pub fn gradient<S: Scalar>(
     let mut out = RowGradient::zero();
     if let Some(undeformed) = &a.undeformed {
         (out.local_force, out.local_torque) = local_gradient(row, a, b, undeformed);
+    } else if b.follows {
+        (out.local_force, out.local_torque) = followed_gradient(row, a, b);
     }
     (out.force, out.torque_a, out.torque_b) = match row {
         Coincident(k) => {

@@ -7,7 +7,7 @@ use super::in_motion::InMotion;
 use super::numbering::Numbering;
 use super::reaction::{self, ReactionJacobian};
 use super::rows::RowCotangent;
-use super::side::{JointSide, pull_driven_frame, sides};
+use super::side::{JointSide, pull_driven_frame, pull_followed_frame, sides};
 use crate::math::{Scalar, Vec3};
 use crate::model::{ConstraintRow, Joint, Model, Modes};
 use std::ops::Range;
@@ -181,13 +181,17 @@ pub fn reaction_jacobian<S: Scalar>(
 
 /// Derivatives of the torques of G(q)ᵀ λ of an attachment in each elastic coordinate, on body A and on
 /// body B, with the place of the coordinate among the velocities; those of the elastic forces in the
-/// rotations are the same numbers, and there are no others.
+/// rotations are the same numbers, and there are no others. None of a coupled joint: where it is closed its row is linear
+/// in the coordinates and the rotation to first order, sin(x − θ) = 0.
 pub fn elastic_reactions<S: Scalar>(
     joint: &Joint<S>,
     modes: &Modes<S>,
     at: &InMotion<S>,
     lambda: &[S],
 ) -> Vec<(usize, Vec3<S>, Vec3<S>)> {
+    if joint.is_coupled() {
+        return Vec::new();
+    }
     let ground = BodyMotion::ground();
     let (a, b) = sides(joint, at.motions, &ground, at.time);
     let mut turned = reaction::ElasticReaction::zero();
@@ -293,12 +297,22 @@ pub fn give(
         ),
         _ => target.frame_a.add(&by_a.frame),
     }
-    match &by_b.moving {
-        None => {
+    match (&by_b.moving, &joint.modes) {
+        (None, _) => {
             target.frame_b.add(&by_b.frame);
             0.0
         }
-        Some(motion) => pull_driven_frame(joint, at.time, &by_b.frame, motion, target),
+        (Some(motion), Some(modes)) => {
+            pull_followed_frame(
+                (joint, modes),
+                (at.numbering, at.motions),
+                (&by_b.frame, motion),
+                (out.y.as_deref_mut(), out.v.as_deref_mut()),
+                target,
+            );
+            0.0
+        }
+        (Some(motion), None) => pull_driven_frame(joint, at.time, &by_b.frame, motion, target),
     }
 }
 

@@ -22,7 +22,7 @@ pub fn reach(model: &Model<f64>) -> f64 {
         [a.point.norm(), b.point.norm(), a.length.abs()]
     });
     let bodies = model.bodies.iter().enumerate();
-    let bodies = bodies.filter(|(i, _)| !model.is_counter(*i));
+    let bodies = bodies.filter(|(i, _)| !model.holds_angles(*i));
     let bodies = bodies.map(|(_, b)| b.position.norm());
     match joints.chain(bodies).fold(0.0, f64::max) {
         0.0 => 1.0,
@@ -39,7 +39,7 @@ pub fn length_scale<S: Scalar>(model: &Model<S>) -> f64 {
         [size(&a.point), size(&b.point), a.length.re().abs()]
     });
     let bodies = model.bodies.iter().enumerate();
-    let bodies = bodies.filter(|(i, _)| !model.is_counter(*i));
+    let bodies = bodies.filter(|(i, _)| !model.holds_angles(*i));
     let bodies = bodies.map(|(_, b)| size(&b.position));
     let largest = joints.chain(bodies).fold(0.0, f64::max);
     if largest > 0.0 { largest } else { 1.0 }

@@ -122,16 +122,20 @@ fn dependent_rows(model: &Model<f64>) -> Option<Vec<DependentRow>> {
     Some(out)
 }
 
-/// Joints in loops of bodies and ground. Without loops no row is redundant.
-pub fn in_loops<S>(model: &Model<S>) -> Vec<usize> {
+/// Joints in loops of bodies and ground, which couplings close too. Without loops no row is redundant.
+pub fn in_loops<S: Scalar>(model: &Model<S>) -> Vec<usize> {
     let ground = model.bodies.len();
     let ends = |j: usize| {
         let joint = &model.joints[j];
         [joint.body_a, joint.body_b.unwrap_or(ground)]
     };
     let mut left: Vec<usize> = (0..model.joints.len()).collect();
+    let mut tied = vec![0; ground + 1];
+    for body in model.ties().into_iter().flatten() {
+        tied[body.unwrap_or(ground)] = 2;
+    }
     loop {
-        let mut degree = vec![0; ground + 1];
+        let mut degree = tied.clone();
         for body in left.iter().flat_map(|&j| ends(j)) {
             degree[body] += 1;
         }

@@ -26,10 +26,7 @@ pub(super) fn rows(model: &Model<f64>, tolerance: f64) -> Vec<DependentRow> {
         .joints
         .iter_mut()
         .for_each(|joint| joint.drives.clear());
-    let ends: Vec<_> = (still.joints.iter())
-        .map(|joint| (joint.body_a, joint.body_b))
-        .collect();
-    let blocks = Blocks::new(still.bodies.len(), &ends).list;
+    let blocks = Blocks::of(&still).list;
     let loops = blocks.iter().filter(|block| block.joints.len() > 1);
     let found = loops.filter_map(|block| of_network(&still, block, tolerance));
     found.flatten().collect()

@@ -1,18 +1,19 @@
 //! The two sides of a joint at an instant: the motion of the body, and the joint's frame on it,
-//! which drives may move.
+//! which drives and couplings may move.
 //!
-//! A frame on body B with rotation φ and displacement σ (see [`crate::model::drive`]) has
+//! A frame on body B with rotation φ and displacement σ (see [`crate::model::drive`] and [`crate::model::coupling`]) has
 //!
 //! ```text
 //! ė1 = φ̇ e2,  ë1 = φ̈ e2 − φ̇² e1,  ė2 = −φ̇ e1,  ë2 = −φ̈ e1 − φ̇² e2,  ṡ = σ̇ e3,  s̈ = σ̈ e3
 //! ```
 
-use super::attachment::deformed_frame;
+use super::attachment::{self, deformed_frame};
 use super::bodies::BodyMotion;
 use super::frame_motion::FrameMotion;
 use super::marker::MarkerKinematics;
+use super::numbering::Numbering;
 use crate::math::{Scalar, Vec3};
-use crate::model::{DegreeOfFreedom, Joint, JointFrame};
+use crate::model::{DegreeOfFreedom, Joint, JointFrame, Modes};
 
 /// One side of a joint.
 #[derive(Clone, Debug)]
@@ -25,6 +26,8 @@ pub struct JointSide<'a, S> {
     pub moving: Option<FrameMotion<S>>,
     /// The frame on the undeformed body, if the body deforms under it.
     pub undeformed: Option<JointFrame<S>>,
+    /// Whether the frame follows coordinates of a coupling.
+    pub follows: bool,
 }
 
 impl<'a, S: Scalar> JointSide<'a, S> {
@@ -35,6 +38,7 @@ impl<'a, S: Scalar> JointSide<'a, S> {
             frame,
             moving: None,
             undeformed: None,
+            follows: false,
         }
     }
 
@@ -71,38 +75,68 @@ pub fn sides<'a, S: Scalar>(
     let motion_b = joint.body_b.map_or(ground, |body| &motions[body]);
     let mut b = JointSide::fixed(motion_b, joint.frame_b);
     if !joint.drives.is_empty() {
-        let (frame, moving) = driven_frame(joint, time);
+        let (frame, moving) = moved_frame(&joint.frame_b, &prescribed(joint, time));
         b.frame = frame;
         b.moving = Some(moving);
     }
     let mut a = JointSide::fixed(&motions[joint.body_a], joint.frame_a);
-    if let Some(modes) = &joint.modes {
-        let (frame, moving) = deformed_frame(&joint.frame_a, modes, motions);
-        a.undeformed = Some(joint.frame_a);
-        a.frame = frame;
-        a.moving = Some(moving);
+    match &joint.modes {
+        Some(modes) if joint.is_coupled() => {
+            let (frame, moving) = moved_frame(&joint.frame_b, &followed(modes, motions));
+            b.frame = frame;
+            b.moving = Some(moving);
+            b.follows = true;
+        }
+        Some(modes) => {
+            let (frame, moving) = deformed_frame(&joint.frame_a, modes, motions);
+            a.undeformed = Some(joint.frame_a);
+            a.frame = frame;
+            a.moving = Some(moving);
+        }
+        None => {}
     }
     (a, b)
 }
 
-/// The prescribed motions of the joint at `time`: (rotation, displacement), zero without a drive.
-fn courses<S: Scalar>(joint: &Joint<S>, time: S) -> ([S; 4], [S; 4]) {
+/// Rotation φ about e3 and displacement σ along it of a frame, with their first and second derivatives and their virtual
+/// rates.
+struct Course<S> {
+    turn: [S; 4],
+    slide: [S; 4],
+}
+
+/// The prescribed motions of the joint at `time`, zero without a drive. A virtual motion does not change them.
+fn prescribed<S: Scalar>(joint: &Joint<S>, time: S) -> Course<S> {
     let zero = [S::zero(); 4];
     let (mut turn, mut slide) = (zero, zero);
     for drive in &joint.drives {
-        let at = drive.course.derivatives(time);
+        let [value, rate, acceleration, _] = drive.course.derivatives(time);
+        let at = [value, rate, acceleration, S::zero()];
         match drive.dof {
             DegreeOfFreedom::Rotation => turn = at,
             DegreeOfFreedom::Translation => slide = at,
         }
     }
-    (turn, slide)
+    Course { turn, slide }
 }
 
-/// The frame on body B of a driven joint at `time`, and its motion.
-fn driven_frame<S: Scalar>(joint: &Joint<S>, time: S) -> (JointFrame<S>, FrameMotion<S>) {
-    let ([turn, spin, spin_up, _], [shift, speed, speed_up, _]) = courses(joint, time);
-    let mut frame = joint.frame_b;
+/// The motions that the coordinates of a coupling give.
+fn followed<S: Scalar>(modes: &Modes<S>, motions: &[BodyMotion<S>]) -> Course<S> {
+    let sums = attachment::parts().map(|part| attachment::sums(modes, motions, part));
+    Course {
+        turn: sums.map(|(_, turn)| turn.z),
+        slide: sums.map(|(slide, _)| slide.z),
+    }
+}
+
+/// A frame on body B that is moved so, and its motion.
+fn moved_frame<S: Scalar>(
+    frame: &JointFrame<S>,
+    course: &Course<S>,
+) -> (JointFrame<S>, FrameMotion<S>) {
+    let ([turn, spin, spin_up, virtual_spin], [shift, speed, speed_up, virtual_speed]) =
+        (course.turn, course.slide);
+    let mut frame = *frame;
     let [e1, e2, e3] = frame.axes;
     let (sine, cosine) = turn.sin_cos();
     let (e1, e2) = (e1 * cosine + e2 * sine, e2 * cosine - e1 * sine);
@@ -118,7 +152,55 @@ fn driven_frame<S: Scalar>(joint: &Joint<S>, time: S) -> (JointFrame<S>, FrameMo
         Vec3::zeros(),
     ];
     moving.acceleration.point = e3 * speed_up;
+    moving.virtual_rate.axes = [e2 * virtual_spin, -e1 * virtual_spin, Vec3::zeros()];
+    moving.virtual_rate.point = e3 * virtual_speed;
     (frame, moving)
+}
+
+/// Pulls the cotangents of a moved frame and of its motion back to the frame (added to `own`): those of the course.
+fn pull_moved_frame(
+    frame: &JointFrame<f64>,
+    course: &Course<f64>,
+    by_frame: &JointFrame<f64>,
+    by_motion: &FrameMotion<f64>,
+    own: &mut JointFrame<f64>,
+) -> Course<f64> {
+    let (turn, slide) = (&course.turn, &course.slide);
+    let [angle, spin, spin_up, virtual_spin] = *turn;
+    let [e1, e2, e3] = moved_frame(frame, course).0.axes;
+    let (x, r, a) = (by_frame, &by_motion.rate, &by_motion.acceleration);
+    let w = &by_motion.virtual_rate;
+    let square = spin * spin;
+    // Cotangents of the turned axes, through themselves and their derivatives.
+    let by_e1 = x.axes[0]
+        - r.axes[1] * spin
+        - a.axes[1] * spin_up
+        - a.axes[0] * square
+        - w.axes[1] * virtual_spin;
+    let by_e2 = x.axes[1] + r.axes[0] * spin + a.axes[0] * spin_up - a.axes[1] * square
+        + w.axes[0] * virtual_spin;
+    let (sine, cosine) = angle.sin_cos();
+    let along = x.point * slide[0] + r.point * slide[1] + a.point * slide[2] + w.point * slide[3];
+    own.add(&JointFrame {
+        point: x.point,
+        axes: [
+            by_e1 * cosine - by_e2 * sine,
+            by_e1 * sine + by_e2 * cosine,
+            x.axes[2] + along,
+        ],
+        length: x.length,
+    });
+    Course {
+        turn: [
+            by_e1.dot(&e2) - by_e2.dot(&e1),
+            r.axes[0].dot(&e2)
+                - r.axes[1].dot(&e1)
+                - 2.0 * spin * (a.axes[0].dot(&e1) + a.axes[1].dot(&e2)),
+            a.axes[0].dot(&e2) - a.axes[1].dot(&e1),
+            w.axes[0].dot(&e2) - w.axes[1].dot(&e1),
+        ],
+        slide: [x, r, a, w].map(|part| part.point.dot(&e3)),
+    }
 }
 
 /// Pulls the cotangents of the frame on body B at `time` and of its motion back to the joint's
@@ -130,41 +212,44 @@ pub fn pull_driven_frame(
     by_motion: &FrameMotion<f64>,
     own: &mut Joint<f64>,
 ) -> f64 {
-    let (turn, slide) = courses(joint, time);
-    let [angle, spin, spin_up, _] = turn;
-    let (frame, _) = driven_frame(joint, time);
-    let [e1, e2, e3] = frame.axes;
-    let (x, r, a) = (by_frame, &by_motion.rate, &by_motion.acceleration);
-    let square = spin * spin;
-    // Cotangents of the turned axes, through themselves and their derivatives.
-    let by_e1 = x.axes[0] - r.axes[1] * spin - a.axes[1] * spin_up - a.axes[0] * square;
-    let by_e2 = x.axes[1] + r.axes[0] * spin + a.axes[0] * spin_up - a.axes[1] * square;
-    let weights_turn = [
-        by_e1.dot(&e2) - by_e2.dot(&e1),
-        r.axes[0].dot(&e2)
-            - r.axes[1].dot(&e1)
-            - 2.0 * spin * (a.axes[0].dot(&e1) + a.axes[1].dot(&e2)),
-        a.axes[0].dot(&e2) - a.axes[1].dot(&e1),
-    ];
-    let weights_slide = [x.point.dot(&e3), r.point.dot(&e3), a.point.dot(&e3)];
-    let (sine, cosine) = angle.sin_cos();
-    let along = x.point * slide[0] + r.point * slide[1] + a.point * slide[2];
-    own.frame_b.add(&JointFrame {
-        point: x.point,
-        axes: [
-            by_e1 * cosine - by_e2 * sine,
-            by_e1 * sine + by_e2 * cosine,
-            x.axes[2] + along,
-        ],
-        length: x.length,
-    });
+    let course = prescribed(joint, time);
+    let by = pull_moved_frame(
+        &joint.frame_b,
+        &course,
+        by_frame,
+        by_motion,
+        &mut own.frame_b,
+    );
     let mut by_time = 0.0;
     for (drive, own) in joint.drives.iter().zip(&mut own.drives) {
-        let weights = match drive.dof {
-            DegreeOfFreedom::Rotation => weights_turn,
-            DegreeOfFreedom::Translation => weights_slide,
+        let [value, rate, acceleration, _] = match drive.dof {
+            DegreeOfFreedom::Rotation => by.turn,
+            DegreeOfFreedom::Translation => by.slide,
         };
+        let weights = [value, rate, acceleration];
         by_time += drive.course.pull_back(time, weights, &mut own.course);
     }
     by_time
+}
+
+/// Pulls the cotangents of frame B of a coupled joint and of its motion back to tangent positions and velocities, where
+/// these are wanted, and to the parameters of the joint (added to `own`); accelerations and virtual velocities are held.
+pub fn pull_followed_frame(
+    (joint, modes): (&Joint<f64>, &Modes<f64>),
+    (numbering, motions): (&Numbering, &[BodyMotion<f64>]),
+    (by_frame, by_motion): (&JointFrame<f64>, &FrameMotion<f64>),
+    states: (Option<&mut [f64]>, Option<&mut [f64]>),
+    own: &mut Joint<f64>,
+) {
+    let course = followed(modes, motions);
+    let by = pull_moved_frame(
+        &joint.frame_b,
+        &course,
+        by_frame,
+        by_motion,
+        &mut own.frame_b,
+    );
+    let along = |x: f64| Vec3::new(0.0, 0.0, x);
+    let parts = std::array::from_fn(|i| (along(by.slide[i]), along(by.turn[i])));
+    attachment::pull_coordinates(modes, (numbering, motions), &parts, states, own);
 }

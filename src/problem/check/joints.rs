@@ -181,8 +181,8 @@ impl Checker<'_> {
         }
     }
 
-    /// Checks that the joint of a drive has the degree of freedom that it prescribes.
-    fn driven(&mut self, pointer: &str, joint: &str, dof: DegreeOfFreedom) {
+    /// Checks that the joint of a drive or a coupling has the degree of freedom that it moves.
+    pub(super) fn driven(&mut self, pointer: &str, joint: &str, dof: DegreeOfFreedom) {
         let kinds = [
             JointKind::Revolute,
             JointKind::Planar,

@@ -8,7 +8,7 @@ use crate::placement::GROUND;
 use crate::pointer::{advice, join};
 use crate::quantity::Quantity;
 use crate::schema::joints::Ends;
-use crate::schema::loads::{Contact, Load, Motion, Stop, Surface, TimeFunction};
+use crate::schema::loads::{Bushing, Contact, Load, Motion, Stop, Surface, TimeFunction};
 use crate::schema::measured::JointReaction;
 
 impl Checker<'_> {
@@ -92,6 +92,7 @@ impl Checker<'_> {
                 self.loaded_joint(pointer, &damping.joint, &kinds);
                 self.joint_motion(pointer, &damping.joint, damping.motion);
             }
+            Load::Bushing(bushing) => self.bushing(pointer, bushing),
             Load::Friction(friction) => {
                 let kinds = [Revolute, Prismatic, Cylindrical, Planar];
                 self.loaded_joint(pointer, &friction.joint, &kinds);
@@ -156,6 +157,41 @@ impl Checker<'_> {
         }
     }
 
+    /// Checks the joint and the symmetry of a bushing.
+    fn bushing(&mut self, pointer: &str, bushing: &Bushing) {
+        use JointKind::{Cylindrical, Free, Planar, Prismatic, Revolute, Spherical, Universal};
+        let kinds = [
+            Free,
+            Spherical,
+            Universal,
+            Cylindrical,
+            Planar,
+            Revolute,
+            Prismatic,
+        ];
+        self.loaded_joint(pointer, &bushing.joint, &kinds);
+        let damping = bushing.damping.as_ref().map(|own| own.entries());
+        let both = [
+            ("stiffness", Some(bushing.stiffness.entries())),
+            ("damping", damping),
+        ];
+        for (key, entries) in both {
+            let Some(entries) = entries else { continue };
+            let value = |i: usize, k: usize| entries[i][k].map_or(0.0, |own| own.value);
+            let pairs = (0..6).flat_map(|i| (0..i).map(move |k| (i, k)));
+            let skew = |&(i, k): &(usize, usize)| {
+                let (a, b) = (value(i, k), value(k, i));
+                (a - b).abs() > 1e-9 * a.abs().max(b.abs())
+            };
+            for (i, k) in pairs.filter(skew) {
+                let place = join(&join(&join(&join(pointer, key), "rows"), i), k);
+                let (found, other) = (value(i, k), value(k, i));
+                let expected = format!("{other}, as row {k} has it: the matrix is symmetric");
+                self.fault(Finding::new(place, format!("{found}"), expected));
+            }
+        }
+    }
+
     /// Checks the reaction of a joint.
     pub(super) fn reaction(&mut self, pointer: &str, of: &JointReaction) {
         self.direction(&join(pointer, "direction"), &of.direction);
@@ -187,6 +223,7 @@ impl Checker<'_> {
             Load::Force(_)
             | Load::Torque(_)
             | Load::Damping(_)
+            | Load::Bushing(_)
             | Load::Friction(_)
             | Load::Drag(_)
             | Load::Stop(_)

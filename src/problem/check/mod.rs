@@ -1,6 +1,7 @@
 //! Checks the meaning of a document: names, numbers, and faults that a schema cannot express.
 
 mod beams;
+mod couplings;
 mod elements;
 mod joints;
 mod load_cases;
@@ -36,6 +37,7 @@ pub(super) fn check(document: &Document, damage: &Damage) -> Vec<Finding> {
     checker.joints();
     checker.loads();
     checker.drives();
+    checker.couplings();
     checker.structures();
     checker.analysis();
     checker.study();

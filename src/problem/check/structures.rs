@@ -49,6 +49,7 @@ impl Checker<'_> {
             ("joints", !document.joints.is_empty()),
             ("loads", !document.loads.is_empty()),
             ("drives", !document.drives.is_empty()),
+            ("couplings", !document.couplings.is_empty()),
         ];
         for (key, _) in moving.iter().filter(|(_, used)| *used) {
             let found = format!("\"{key}\" beside structures without a motion");

@@ -259,6 +259,9 @@ impl Checker<'_> {
             }
             Instant::JointForce(of) => self.reaction(&join(pointer, "joint_force"), of),
             Instant::JointMoment(of) => self.reaction(&join(pointer, "joint_moment"), of),
+            Instant::CouplingReaction(of) => {
+                self.coupling_reaction(&join(pointer, "coupling_reaction"), of);
+            }
             Instant::SpringLength(of) => {
                 self.spring(&join(pointer, "spring_length"), &of.load, false);
             }

@@ -1,4 +1,4 @@
-//! The bodies, joints, loads and drives of a use: their names and places in the machine.
+//! The bodies, joints, loads, drives and couplings of a use: their names and places in the machine.
 
 use super::used::Used;
 use super::writer::Writer;
@@ -44,6 +44,11 @@ impl Writer<'_> {
         match section {
             "bodies" => self.body(used, &mut entry, &pointer),
             "drives" => used.rename_joint(entry.get_mut("joint")),
+            "couplings" => {
+                for (kind, inner) in entry.as_object_mut().into_iter().flatten() {
+                    self.coupling(used, inner, &join(&pointer, kind));
+                }
+            }
             _ => {
                 for (kind, inner) in entry.as_object_mut().into_iter().flatten() {
                     let pointer = join(&pointer, kind);
@@ -99,6 +104,29 @@ impl Writer<'_> {
             turns.push(own);
         }
         place.insert("turn".to_owned(), Value::Array(turns));
+    }
+
+    /// Renames what a coupling names, and moves the place where teeth meet.
+    fn coupling(&mut self, used: &mut Used, entry: &mut Value, pointer: &str) {
+        for key in ["gears", "pulleys"] {
+            let bodies = entry.get_mut(key).and_then(Value::as_array_mut);
+            for body in bodies.into_iter().flatten() {
+                used.rename_body(Some(body));
+            }
+        }
+        for key in ["rack", "pinion"] {
+            used.rename_body(entry.get_mut(key));
+        }
+        used.rename_body(entry.get_mut("carrier").filter(|own| *own != GROUND));
+        used.rename_joint(entry.get_mut("joint"));
+        let terms = entry.get_mut("terms").and_then(Value::as_array_mut);
+        for term in terms.into_iter().flatten() {
+            used.rename_joint(term.get_mut("joint"));
+        }
+        match entry.get_mut("at") {
+            own @ Some(Value::String(_)) => used.rename_location(own),
+            own => self.moved(used, own, &join(pointer, "at"), true),
+        }
     }
 
     /// Renames and moves what a joint or a load names.

@@ -50,7 +50,7 @@ pub fn read(document: &mut Value, file: &str, source: &mut Source) -> Result<(),
         let content = json(text, &shown)?;
         let inner = Source::index(text);
         let mut findings: Vec<Finding> = inner.duplicates.iter().map(twice).collect();
-        let expected = "an object with bodies, joints, loads and drives";
+        let expected = "an object with bodies, joints, loads, drives and couplings";
         match &content {
             Value::Object(_) if content.get("file").is_none() => {}
             Value::Object(_) => findings

@@ -1,5 +1,5 @@
 //! Writes out the parts of a document, their uses and defaults, so that what reads it meets bodies, joints,
-//! loads and drives alone. [`crate::origins`] keeps where each comes from.
+//! loads, drives and couplings alone. [`crate::origins`] keeps where each comes from.
 
 mod algebra;
 mod defaults;

@@ -15,7 +15,7 @@ use serde_json::{Map, Value};
 use std::collections::HashSet;
 
 /// Sections that a part has.
-const SECTIONS: [&str; 4] = ["bodies", "joints", "loads", "drives"];
+const SECTIONS: [&str; 5] = ["bodies", "joints", "loads", "drives", "couplings"];
 
 /// Writes the uses of a document whose structure is sound.
 pub fn write_out(

@@ -417,6 +417,7 @@ impl<S: Scalar> FlexibleBodies<S> {
                 LoadKind::TorsionSpring { .. }
                 | LoadKind::Damping { .. }
                 | LoadKind::BallDamping { .. }
+                | LoadKind::Bushing { .. }
                 | LoadKind::Friction { .. }
                 | LoadKind::JointStop { .. }
                 | LoadKind::Distributed(_) => {}

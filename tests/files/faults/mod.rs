@@ -83,6 +83,7 @@ macro_rules! faults {
 }
 
 mod beams;
+mod couplings;
 mod elements;
 mod loads;
 mod modal;

@@ -10,6 +10,7 @@ use crate::model::Model;
 use crate::system::accelerations::Accelerations;
 use crate::system::bodies::{self, add6, positions_of};
 use crate::system::{Numbering, flexible, placement, turns};
+use std::ops::Range;
 
 /// Largest number of iterations of the position projection.
 const ITERATIONS: usize = 12;
@@ -51,6 +52,8 @@ pub struct Stepper<'a, S> {
     /// The results of the last step.
     pub data: StepData<Vec<S>>,
     length: f64,
+    /// Coordinates of couplings, which count by the bodies that follow them.
+    followed: Range<usize>,
     /// Whether loads or drives have kinks.
     kinks: bool,
     residual: Vec<S>,
@@ -66,6 +69,7 @@ impl<'a, S: SolveScalar> Stepper<'a, S> {
             field: Accelerations::new(model, numbering),
             data: StepData::new(numbering),
             length: placement::length_scale(model),
+            followed: model.coordinates(),
             kinks: has_kinks(model),
             residual: vec![S::zero(); numbering.velocities() + numbering.constraints()],
             moved: vec![S::zero(); numbering.positions()],
@@ -211,10 +215,12 @@ impl<'a, S: SolveScalar> Stepper<'a, S> {
             self.residual.iter_mut().for_each(|x| *x = -*x);
             field.solve(&mut self.residual);
             let (step, ds) = self.residual.split_at(nv);
-            let size = step.chunks_exact(6).fold(0.0_f64, |m, six| {
+            let all = step.chunks_exact(6).enumerate();
+            let size = all.fold(0.0_f64, |m, (body, six)| {
                 let part = |x: &[S]| x.iter().fold(0.0_f64, |m, x| m.max(x.re().abs()));
                 // `f64::max` ignores NaN, so test every component.
                 match six.iter().all(|x| x.is_finite()) {
+                    true if self.followed.contains(&body) => m,
                     true => m.max(part(&six[..3]) / self.length).max(part(&six[3..])),
                     false => f64::INFINITY,
                 }

@@ -3,16 +3,19 @@
 use crate::math::Scalar;
 use crate::model::Model;
 use crate::system::{Numbering, placement};
+use std::ops::Range;
 
 /// Changes below this are round-off, relative to the largest position or velocity.
 const ROUND_OFF: f64 = 8.0 * f64::EPSILON;
 
 /// Length and gravity of a scene; they are constant during a run.
-#[derive(Clone, Copy, Debug)]
+#[derive(Clone, Debug)]
 pub(super) struct SceneScale {
     /// Length scale \[m\].
     length: f64,
     gravity: f64,
+    /// Bodies that count by those that follow them: coordinates of couplings.
+    followed: Range<usize>,
 }
 
 /// For positions, rotations, velocities and angular velocities: largest increment of the step and
@@ -21,6 +24,8 @@ pub(super) struct Scales {
     parts: [[f64; 2]; 4],
     /// Relative round-off of velocity increments due to positions.
     pub round_off: f64,
+    /// Bodies that do not count.
+    followed: Range<usize>,
 }
 
 impl SceneScale {
@@ -28,6 +33,7 @@ impl SceneScale {
         Self {
             length: placement::length_scale(model),
             gravity: largest(model.gravity.as_slice()),
+            followed: model.coordinates(),
         }
     }
 
@@ -35,7 +41,8 @@ impl SceneScale {
     /// the change by gravity in a step, so a model at rest is not judged by its round-off.
     pub fn step<S: Scalar>(&self, n: &Numbering, [q, v, dq, dv]: [&[S]; 4], h: f64) -> Scales {
         let (mut shift, mut turn, mut place) = (0.0_f64, 0.0_f64, self.length);
-        for body in 0..n.bodies() {
+        let counts = |body: &usize| !self.followed.contains(body);
+        for body in (0..n.bodies()).filter(counts) {
             let (dq, q) = (&dq[n.position(body)..], &q[n.position(body)..]);
             shift = shift.max(largest(&dq[..3]));
             place = place.max(largest(&q[..3]));
@@ -43,7 +50,8 @@ impl SceneScale {
         }
         let gained = h * self.gravity;
         let mut rates = [[0.0_f64, gained], [0.0, gained / self.length]];
-        for (six, now) in dv.chunks_exact(6).zip(v.chunks_exact(6)) {
+        let all = dv.chunks_exact(6).zip(v.chunks_exact(6)).enumerate();
+        for (_, (six, now)) in all.filter(|(body, _)| counts(body)) {
             for part in 0..2 {
                 rates[part][0] = rates[part][0].max(largest(&six[3 * part..3 * part + 3]));
                 rates[part][1] = rates[part][1].max(largest(&now[3 * part..3 * part + 3]));
@@ -52,6 +60,7 @@ impl SceneScale {
         let gained = rates[0][0].max(gained);
         Scales {
             parts: [[shift, place], [turn, 1.0], rates[0], rates[1]],
+            followed: self.followed.clone(),
             round_off: if gained > 0.0 {
                 ROUND_OFF * place / (h * gained)
             } else {
@@ -74,9 +83,12 @@ impl Scales {
         let (positions, velocities) = update.split_at(update.len() / 2);
         let mut size = 0.0_f64;
         for (half, all, scale) in [(0, positions, 1.0), (2, velocities, 1.0 / h)] {
-            for six in all.chunks_exact(6) {
+            for (body, six) in all.chunks_exact(6).enumerate() {
                 if six.iter().any(|x| !x.is_finite()) {
                     return f64::NAN;
+                }
+                if self.followed.contains(&body) {
+                    continue;
                 }
                 for part in 0..2 {
                     let change = largest(&six[3 * part..3 * part + 3]) * scale;

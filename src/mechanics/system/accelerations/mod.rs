@@ -90,6 +90,8 @@ pub enum FallbackReason {
     Loops,
     /// A body is flexible: its mass matrix couples it with its carriers.
     Flexible,
+    /// Joints are coupled: their rows have coordinates in common.
+    Coupled,
     /// A body, with the bodies that it carries, has a motion without inertia, or with an inertia
     /// that loses five digits relative to the others.
     Body(usize),
@@ -104,6 +106,7 @@ impl<'a, S: SolveScalar> Accelerations<'a, S> {
             Some(tree) => (Solver::Tree(Box::new(tree)), None),
             None => {
                 let why = match model.flexible.is_empty() {
+                    true if model.is_coupled() => FallbackReason::Coupled,
                     true => FallbackReason::Loops,
                     false => FallbackReason::Flexible,
                 };
@@ -169,7 +172,10 @@ impl<'a, S: SolveScalar> Accelerations<'a, S> {
     pub fn closes_loops(&self) -> bool {
         self.loops
             || match self.left_to_sparse {
-                None | Some(FallbackReason::Loops | FallbackReason::Flexible) => false,
+                None
+                | Some(
+                    FallbackReason::Loops | FallbackReason::Flexible | FallbackReason::Coupled,
+                ) => false,
                 Some(FallbackReason::Body(_) | FallbackReason::Joint(_)) => true,
             }
     }

@@ -2,7 +2,7 @@
 //! files of their own.
 
 use super::pull::{Pulled, Virtual, moving, with_motions};
-use super::{Acting, contact, drag, power, pull, stop};
+use super::{Acting, bushing, contact, drag, power, pull, stop};
 use crate::math::{Scalar, Vec3};
 use crate::model::LoadKind;
 
@@ -18,6 +18,9 @@ pub(super) fn forces<S: Scalar>(
     }
     match kind {
         LoadKind::Contact(contact) => contact::forces(contact, at),
+        LoadKind::Bushing {
+            stiffness, damping, ..
+        } => bushing::forces([stiffness, damping], at),
         LoadKind::Drag {
             coefficient, width, ..
         } => [drag::force(at, *coefficient, *width), none],
@@ -41,6 +44,9 @@ pub(super) fn pulled<S: Scalar>(
     }
     match kind {
         LoadKind::Contact(contact) => contact::pull(contact, at, &virtually, &mut out),
+        LoadKind::Bushing {
+            stiffness, damping, ..
+        } => bushing::pull([stiffness, damping], at, &virtually, &mut out),
         LoadKind::Drag {
             coefficient, width, ..
         } => drag::pull(at, &virtually, [*coefficient, *width], &mut out),
@@ -56,6 +62,7 @@ pub(super) fn potential<S: Scalar>(kind: &LoadKind<S>, at: &Acting<S>) -> S {
     }
     match kind {
         LoadKind::Contact(contact) => contact::potential(contact, at),
+        LoadKind::Bushing { stiffness, .. } => bushing::potential(stiffness, at),
         _ => power::potential(kind, at),
     }
 }
@@ -73,6 +80,9 @@ pub(super) fn pulled_potential<S: Scalar>(
     }
     match kind {
         LoadKind::Contact(contact) => contact::pull_potential(contact, at, weight, &mut out),
+        LoadKind::Bushing { stiffness, .. } => {
+            bushing::pull_potential(stiffness, at, weight, &mut out);
+        }
         _ => return pull::pull_potential(kind, at, weight),
     }
     Some(out)

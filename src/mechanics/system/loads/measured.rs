@@ -94,18 +94,19 @@ fn touching<S>(kind: &LoadKind<S>) -> &Contact<S> {
     own
 }
 
-/// Rest angle, k and c of a torsion spring.
-fn torsion_spring<S: Scalar>(kind: &LoadKind<S>) -> [S; 3] {
+/// Rest angle, k, k3 and c of a torsion spring.
+fn torsion_spring<S: Scalar>(kind: &LoadKind<S>) -> [S; 4] {
     let LoadKind::TorsionSpring {
         rest_angle,
         stiffness,
+        cubic,
         damping,
         ..
     } = kind
     else {
         unreachable!("{CHECKED}")
     };
-    [*rest_angle, *stiffness, *damping]
+    [*rest_angle, *stiffness, *cubic, *damping]
 }
 
 /// Adds `weight` times the derivative of [`value`] to states and parameters.
@@ -140,12 +141,15 @@ fn pull(kind: &LoadKind<f64>, at: &Acting<f64>, part: LoadPart, weight: f64) -> 
             ]);
         }
         LoadPart::Torque => {
-            let [rest_angle, stiffness, damping] = torsion_spring(kind);
-            pull_angle(at, weight * stiffness, &mut out);
+            let [rest_angle, stiffness, cubic, damping] = torsion_spring(kind);
+            let x = angle(at, rest_angle);
+            let by_angle = weight * (stiffness + 3.0 * cubic * x * x);
+            pull_angle(at, by_angle, &mut out);
             pull_turn(at, weight * damping, &mut out);
             out.set_scalars([
-                -(weight * stiffness),
-                weight * angle(at, rest_angle),
+                -by_angle,
+                weight * x,
+                weight * x * x * x,
                 weight * turn_rate(at),
             ]);
         }

@@ -3,9 +3,10 @@
 //! For virtual velocities ψ, ψᵀf is the power of a load, linear in ψ. `power.rs` has the forces and
 //! `pull.rs` the transposed derivative of the power, once for each kind and for any scalar. Forces,
 //! Jacobians and pull-backs all use these two, so they agree. Stops have both in `stop.rs`, contacts in
-//! `contact.rs`, and their law is in `normal_law.rs`. Loads that are spread over the elements of a
+//! `contact.rs`, bushings in `bushing.rs`, and the law of the former is in `normal_law.rs`. Loads that are spread over the elements of a
 //! flexible body act on its coordinates too: `distributed.rs` has all of theirs.
 
+mod bushing;
 mod contact;
 mod distributed;
 mod drag;
@@ -114,6 +115,7 @@ fn for_loads<S: Scalar>(
             }
             LoadKind::Damping { joint, .. }
             | LoadKind::BallDamping { joint, .. }
+            | LoadKind::Bushing { joint, .. }
             | LoadKind::Friction { joint, .. } => on_joint(*joint),
             LoadKind::Distributed(_) => continue,
         };
@@ -180,6 +182,10 @@ fn blocks<S: Scalar>(kind: &LoadKind<S>) -> Blocks {
         LoadKind::Spring { damping, .. } => of(BOTH, BOTH, damped(damping, BOTH)),
         LoadKind::TorsionSpring { damping, .. } => of(ANGULAR, ANGULAR, damped(damping, ANGULAR)),
         LoadKind::Contact(_) => of(BOTH, BOTH, BOTH),
+        LoadKind::Bushing { damping, .. } => match damping.iter().all(|c| c.is_zero()) {
+            true => of(BOTH, BOTH, NONE),
+            false => of(BOTH, BOTH, BOTH),
+        },
         LoadKind::Drag { .. } => of(BOTH, ANGULAR, BOTH),
         LoadKind::BallDamping { .. } => of(ANGULAR, ANGULAR, ANGULAR),
         LoadKind::JointStop {

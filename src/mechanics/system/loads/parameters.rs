@@ -1,7 +1,7 @@
 //! Adds the derivatives of a load's power to the cotangents of its parameters.
 
 use super::pull::Pulled;
-use super::{contact, stop};
+use super::{bushing, contact, stop};
 use crate::model::{JointFrame, LoadKind, Model};
 
 /// Adds the derivatives in a load's parameters to the cotangent of the model, and that in time to
@@ -63,13 +63,15 @@ pub(super) fn give_to_parameters(
             LoadKind::TorsionSpring {
                 rest_angle,
                 stiffness,
+                cubic,
                 damping,
                 ..
             },
         ) => {
             *rest_angle += s0;
             *stiffness += s1;
-            *damping += s2;
+            *cubic += s2;
+            *damping += s3;
             give_to_joint(model, *joint, pulled);
         }
         (LoadKind::Damping { joint, .. }, LoadKind::Damping { coefficient, .. }) => {
@@ -78,6 +80,17 @@ pub(super) fn give_to_parameters(
         }
         (LoadKind::BallDamping { .. }, LoadKind::BallDamping { coefficient, .. }) => {
             *coefficient += s0;
+        }
+        (
+            LoadKind::Bushing { joint, .. },
+            LoadKind::Bushing {
+                stiffness, damping, ..
+            },
+        ) => {
+            if let Some(six) = &pulled.six {
+                bushing::give(six, stiffness, damping);
+            }
+            give_to_joint(model, *joint, pulled);
         }
         (LoadKind::Friction { joint, .. }, LoadKind::Friction { size, width, .. }) => {
             *size += s0;
@@ -125,6 +138,7 @@ pub(super) fn give_to_parameters(
             | LoadKind::TorsionSpring { .. }
             | LoadKind::Damping { .. }
             | LoadKind::BallDamping { .. }
+            | LoadKind::Bushing { .. }
             | LoadKind::Friction { .. }
             | LoadKind::Drag { .. }
             | LoadKind::JointStop { .. }

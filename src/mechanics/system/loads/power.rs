@@ -65,9 +65,13 @@ pub(super) fn forces<S: Scalar>(
         LoadKind::TorsionSpring {
             rest_angle,
             stiffness,
+            cubic,
             damping,
             ..
-        } => about_axis(at, -torsion(at, [*rest_angle, *stiffness, *damping])),
+        } => about_axis(
+            at,
+            -torsion(at, [*rest_angle, *stiffness, *cubic, *damping]),
+        ),
         LoadKind::Damping {
             dof, coefficient, ..
         } => along(at, *dof, |rate| -(*coefficient * rate)),
@@ -87,6 +91,7 @@ pub(super) fn forces<S: Scalar>(
         | LoadKind::DistanceStop { .. }
         | LoadKind::Drag { .. }
         | LoadKind::Contact(_)
+        | LoadKind::Bushing { .. }
         | LoadKind::Distributed(_) => [none, none],
     }
 }
@@ -97,9 +102,10 @@ pub(super) fn tension<S: Scalar>(at: &SpringLength<S>, [rest, k, k3, c]: [S; 4])
     x * (k + k3 * x * x) + c * at.rate
 }
 
-/// Torque k x + c φ̇ of a torsion spring \[N m\], from its rest angle, k and c.
-pub(super) fn torsion<S: Scalar>(at: &Acting<S>, [rest, k, c]: [S; 3]) -> S {
-    k * angle(at, rest) + c * turn_rate(at)
+/// Torque k x + k3 x³ + c φ̇ of a torsion spring \[N m\], from its rest angle, k, k3 and c.
+pub(super) fn torsion<S: Scalar>(at: &Acting<S>, [rest, k, k3, c]: [S; 4]) -> S {
+    let x = angle(at, rest);
+    x * (k + k3 * x * x) + c * turn_rate(at)
 }
 
 /// Potential energy of a load \[J\]; zero if it stores none.
@@ -120,10 +126,12 @@ pub(super) fn potential<S: Scalar>(kind: &LoadKind<S>, at: &Acting<S>) -> S {
         LoadKind::TorsionSpring {
             rest_angle,
             stiffness,
+            cubic,
             ..
         } => {
             let x = angle(at, *rest_angle);
-            *stiffness * x * x * 0.5
+            let square = x * x;
+            square * (*stiffness * 0.5 + *cubic * square * 0.25)
         }
         LoadKind::JointStop { .. }
         | LoadKind::DistanceStop { .. }
@@ -133,6 +141,7 @@ pub(super) fn potential<S: Scalar>(kind: &LoadKind<S>, at: &Acting<S>) -> S {
         | LoadKind::Distributed(_)
         | LoadKind::Damping { .. }
         | LoadKind::BallDamping { .. }
+        | LoadKind::Bushing { .. }
         | LoadKind::Friction { .. }
         | LoadKind::Drag { .. } => S::zero(),
     }

@@ -24,6 +24,8 @@ pub(super) struct Pulled<S> {
     /// In the scalars of the load, in the order of its definition. For a force or torque the first
     /// is the magnitude.
     pub scalars: [S; SCALARS],
+    /// Of a bushing: vectors a, b, c, so that the derivatives in its matrices are a bᵀ and a cᵀ.
+    pub six: Option<[[S; 6]; 3]>,
 }
 
 impl<S: Scalar> Pulled<S> {
@@ -33,6 +35,7 @@ impl<S: Scalar> Pulled<S> {
             b: SideCotangent::fixed(),
             direction: Vec3::zeros(),
             scalars: [S::zero(); SCALARS],
+            six: None,
         }
     }
 
@@ -155,19 +158,25 @@ pub(super) fn pull<S: Scalar>(
         LoadKind::TorsionSpring {
             rest_angle,
             stiffness,
+            cubic,
             damping,
             ..
         } => {
             let (x, rate) = (angle(at, *rest_angle), turn_rate(at));
             let virtual_rate = turn_rate(virtually);
-            let torque = *stiffness * x + *damping * rate;
+            let square = x * x;
+            let torque = x * (*stiffness + *cubic * square) + *damping * rate;
+            let by_angle = -(*stiffness + *cubic * square * 3.0) * virtual_rate;
             pull_turn(virtually, -torque, out);
             hold_virtual(out);
             pull_turn(at, -(*damping * virtual_rate), out);
-            pull_angle(at, -(*stiffness * virtual_rate), out);
-            out.scalars[0] = *stiffness * virtual_rate;
-            out.scalars[1] = -(x * virtual_rate);
-            out.scalars[2] = -(rate * virtual_rate);
+            pull_angle(at, by_angle, out);
+            out.set_scalars([
+                -by_angle,
+                -(x * virtual_rate),
+                -(x * square * virtual_rate),
+                -(rate * virtual_rate),
+            ]);
         }
         LoadKind::Damping {
             dof,
@@ -210,6 +219,7 @@ pub(super) fn pull<S: Scalar>(
         | LoadKind::DistanceStop { .. }
         | LoadKind::Drag { .. }
         | LoadKind::Contact(_)
+        | LoadKind::Bushing { .. }
         | LoadKind::Distributed(_) => {}
     }
 }
@@ -241,12 +251,16 @@ pub(super) fn pull_potential<S: Scalar>(
         LoadKind::TorsionSpring {
             rest_angle,
             stiffness,
+            cubic,
             ..
         } => {
             let x = angle(at, *rest_angle);
-            pull_angle(at, weight * *stiffness * x, &mut out);
-            out.scalars[0] = -(weight * *stiffness * x);
-            out.scalars[1] = weight * x * x * 0.5;
+            let square = x * x;
+            let by_x = weight * x * (*stiffness + *cubic * square);
+            pull_angle(at, by_x, &mut out);
+            out.scalars[0] = -by_x;
+            out.scalars[1] = weight * square * 0.5;
+            out.scalars[2] = weight * square * square * 0.25;
         }
         LoadKind::JointStop { .. }
         | LoadKind::DistanceStop { .. }
@@ -256,6 +270,7 @@ pub(super) fn pull_potential<S: Scalar>(
         | LoadKind::Distributed(_)
         | LoadKind::Damping { .. }
         | LoadKind::BallDamping { .. }
+        | LoadKind::Bushing { .. }
         | LoadKind::Friction { .. }
         | LoadKind::Drag { .. } => return None,
     }

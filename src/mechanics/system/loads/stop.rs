@@ -63,6 +63,7 @@ pub(super) fn of<S>(kind: &LoadKind<S>) -> Option<Stop<'_, S>> {
         | LoadKind::TorsionSpring { .. }
         | LoadKind::Damping { .. }
         | LoadKind::BallDamping { .. }
+        | LoadKind::Bushing { .. }
         | LoadKind::Friction { .. }
         | LoadKind::Drag { .. }
         | LoadKind::Contact(_)

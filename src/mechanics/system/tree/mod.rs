@@ -55,9 +55,9 @@ pub fn closes_loops<S>(model: &Model<S>, numbering: &Numbering) -> bool {
 
 impl<S: Scalar> Tree<S> {
     /// Plans the elimination; `None` if so many joints of `model` close loops that sparse LU costs
-    /// less, or a body is flexible.
+    /// less, a body is flexible, or joints are coupled.
     pub fn plan(model: &Model<S>, numbering: &Numbering) -> Option<Self> {
-        if !model.flexible.is_empty() {
+        if !model.flexible.is_empty() || model.is_coupled() {
             return None;
         }
         let forest = links::forest(model, numbering);

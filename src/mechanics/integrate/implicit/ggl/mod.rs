@@ -321,7 +321,9 @@ impl<'a, S: Scalar> Equations<'a, S> {
                     }
                     emit.add_row(f4 + i, column + 3, &(by.theta * h));
                 }
-                let Some(modes) = &joint.modes else { continue };
+                // The rate of a coupled joint does not depend on its coordinates where it is closed.
+                let modes = joint.modes.as_ref().filter(|_| !joint.is_coupled());
+                let Some(modes) = modes else { continue };
                 for (slot, x) in by_coordinates(joint, modes, numbering, &of_frame) {
                     emit.add(f4 + i, y + slot, x * h);
                 }

@@ -1,0 +1,169 @@
+//! Couplings: linear relations between relative motions of bodies, as of gears, racks, screws and belts.
+//!
+//! ```text
+//! Σ c_i x_i = C       x_i an angle about an axis of two bodies or a displacement along it, over any number of turns
+//! ```
+//!
+//! x_1 … x_{n−1} are states: coordinates of bodies without mass, each with one unknown. A row for each makes its bodies
+//! follow, and one makes the last two follow all of them,
+//!
+//! ```text
+//! sin(x_i − θ_i(q)) = 0  or  x_i − s_i(q) = 0,       x_n = (C − Σ c_i x_i) / c_n
+//! ```
+//!
+//! So the number of turns is part of the state and never guessed, the relation holds after any number of them, and its
+//! derivative in c_i has the whole angle. Each row is that of a [drive](super::drive) whose course is linear in
+//! coordinates instead of a function of time: the frame on body B turns about e3 or moves along it.
+//! Coordinates are zero at the start.
+
+use super::drive::DegreeOfFreedom;
+use super::flexible::Modes;
+use super::joint::{Joint, JointFrame, JointKind};
+use super::{Mobility, Model, RigidBody};
+use crate::math::{Mat3, Scalar, Vec3, rotation};
+use std::ops::Range;
+
+/// A relative motion of two bodies in a coupling.
+#[derive(Clone, Debug)]
+pub struct CoupledMotion<S> {
+    /// The bodies and frames, as of a joint, and the name.
+    pub joint: Joint<S>,
+    /// The rotation about e3 or the displacement along it.
+    pub dof: DegreeOfFreedom,
+    /// c.
+    pub factor: S,
+}
+
+impl<S: Scalar> Model<S> {
+    /// Whether motions of joints are coupled.
+    pub fn is_coupled(&self) -> bool {
+        self.joints.iter().any(Joint::is_coupled)
+    }
+
+    /// Whether a body carries the coordinate of a coupling.
+    pub fn is_coordinate(&self, body: usize) -> bool {
+        self.coordinates().contains(&body)
+    }
+
+    /// The bodies that carry coordinates of couplings, which follow each other; empty without.
+    pub fn coordinates(&self) -> Range<usize> {
+        let coupled = self.joints.iter().filter(|joint| joint.is_coupled());
+        let modes = coupled.filter_map(|joint| joint.modes.as_ref());
+        let all = modes.flat_map(|own| &own.places).map(|own| own.0);
+        let ends = all.fold(None, |ends: Option<(usize, usize)>, body| match ends {
+            None => Some((body, body)),
+            Some((first, last)) => Some((first.min(body), last.max(body))),
+        });
+        ends.map_or(0..0, |(first, last)| first..last + 1)
+    }
+
+    /// The bodies of each coupling: those of its joints (`None` is ground), and those that carry its coordinates.
+    pub fn ties(&self) -> Vec<Vec<Option<usize>>> {
+        let mut ties: Vec<Vec<Option<usize>>> = Vec::new();
+        for joint in self.joints.iter().filter(|joint| joint.is_coupled()) {
+            let places = joint.modes.iter().flat_map(|own| &own.places);
+            let carriers: Vec<Option<usize>> = places.map(|own| Some(own.0)).collect();
+            let mut own = carriers.clone();
+            own.extend([Some(joint.body_a), joint.body_b]);
+            ties.retain(|tie| {
+                let apart = !tie.iter().any(|body| carriers.contains(body));
+                if !apart {
+                    own.extend(tie);
+                }
+                apart
+            });
+            own.sort_unstable();
+            own.dedup();
+            ties.push(own);
+        }
+        ties
+    }
+
+    /// Couples motions, which the bodies' placement satisfies up to `miss`, C − Σ c_i x_i there: the joint of each motion
+    /// that is added. The factor of the last motion is not zero.
+    pub fn couple(&mut self, name: &str, motions: &[CoupledMotion<S>], miss: S) -> Vec<usize> {
+        let Some((last, others)) = motions.split_last() else {
+            return Vec::new();
+        };
+        let first = self.bodies.len();
+        for (i, motion) in others.iter().enumerate() {
+            let of = &motion.joint.name;
+            let mut carrier = RigidBody::massless(format!("{name}, motion of {of}"));
+            carrier.mobility = Mobility::carrier(1);
+            self.bodies.push(carrier);
+            self.follow(name, motion, S::zero(), vec![(first + i, S::one())]);
+        }
+        let follows = others.iter().enumerate();
+        let follows = follows.map(|(i, own)| (first + i, -own.factor / last.factor));
+        self.follow(name, last, miss / last.factor, follows.collect());
+        let added = self.joints.len();
+        (added - motions.len()..added).collect()
+    }
+
+    /// Adds the row by which a motion, counted from `shift` beyond the placement, follows Σ f_k x_k of coordinates with
+    /// their carriers.
+    fn follow(
+        &mut self,
+        name: &str,
+        motion: &CoupledMotion<S>,
+        shift: S,
+        factors: Vec<(usize, S)>,
+    ) {
+        let joint = &motion.joint;
+        let along = |factor: S| Vec3::new(S::zero(), S::zero(), factor);
+        let (mut displacement, mut turn) = (Vec::new(), Vec::new());
+        for &(_, factor) in &factors {
+            let (slides, turns) = match motion.dof {
+                DegreeOfFreedom::Rotation => (Vec3::zeros(), along(factor)),
+                DegreeOfFreedom::Translation => (along(factor), Vec3::zeros()),
+            };
+            displacement.push(slides);
+            turn.push(turns);
+        }
+        let own = Joint {
+            name: format!("{name} ({})", joint.name),
+            kind: JointKind::Coupled(motion.dof),
+            frame_b: self.placed_frame(joint, motion.dof, shift),
+            drives: Vec::new(),
+            redundant: Vec::new(),
+            trivial_rows: Vec::new(),
+            modes: Some(Modes {
+                places: factors.iter().map(|&(carrier, _)| (carrier, 0)).collect(),
+                displacement,
+                rotation: turn,
+            }),
+            ..joint.clone()
+        };
+        self.joints.push(own);
+    }
+
+    /// Frame B of a joint, turned or shifted by `shift` from where the motion is zero at the placement.
+    fn placed_frame(&self, joint: &Joint<S>, dof: DegreeOfFreedom, shift: S) -> JointFrame<S> {
+        let a = &self.bodies[joint.body_a];
+        let (origin, turned) = match joint.body_b.map(|body| &self.bodies[body]) {
+            Some(b) => (b.position, rotation::matrix(&b.orientation)),
+            None => (Vec3::zeros(), Mat3::identity()),
+        };
+        let turn_a = rotation::matrix(&a.orientation);
+        let mut frame = joint.frame_b;
+        let [e1, e2, e3] = frame.axes;
+        match dof {
+            DegreeOfFreedom::Rotation => {
+                let seen = turned.tr_mul(&(turn_a * joint.frame_a.axes[0]));
+                let (x, y) = (e1.dot(&seen), e2.dot(&seen));
+                let size = (x * x + y * y).sqrt();
+                let (x, y) = (x / size, y / size);
+                let (sine, cosine) = shift.sin_cos();
+                let (x, y) = (x * cosine - y * sine, x * sine + y * cosine);
+                frame.axes = [e1 * x + e2 * y, e2 * x - e1 * y, e3];
+            }
+            DegreeOfFreedom::Translation => {
+                let point_a = a.position + turn_a * joint.frame_a.point;
+                let d = point_a - origin - turned * frame.point;
+                let slide = (turn_a * joint.frame_a.axes[2]).dot(&d);
+                frame.point += e3 * (slide + shift);
+            }
+        }
+        frame
+    }
+}
