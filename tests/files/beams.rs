@@ -336,3 +336,42 @@ fn files_are_told_what_a_beam_cannot_be() {
         "a torque on the beam",
     );
 }
+
+/// A slender cantilever: one element bends exactly under a force at its end, and errors of frequencies fall with h⁴. The table of
+/// docs/structures.md compares these with elements of two nodes.
+#[test]
+fn a_cantilever_needs_few_elements() {
+    let (young, side, force) = (2.1e11, 0.01_f64, 10.0);
+    let values = |elements: usize| {
+        crate::reference::documents::values(&json!({
+            "version": 1, "name": "cantilever",
+            "materials": {"steel": {"young": young, "poisson": 0.3, "density": 7850}},
+            "structures": {"bar": {
+                "mesh": {"frame": {"points": {"a": [0, 0, 0], "b": [1, 0, 0]}, "members": {
+                    "ab": {"between": ["a", "b"], "orientation": [0, 1, 0], "elements": elements}}}},
+                "material": "steel", "section": {"rectangle": {"width": side, "height": side}},
+                "supports": {"foot": {"nodes": "a"}}}},
+            "load_cases": {"push": {"end": {"point": {"nodes": "b", "force": [0, 0, force]}}}},
+            "functions": {
+                "sinking": {"displacement": {"case": "push", "nodes": "b", "direction": [0, 0, 1]}},
+                "first": {"frequency": {"mode": 1}}, "second": {"frequency": {"mode": 3}}}
+        }))
+    };
+    let shear = young / 2.6 * side * side * 5.0 / 6.0;
+    let bending = young * side.powi(4) / 12.0;
+    let exact = force / (3.0 * bending) + force / shear;
+    assert!((values(1)[0] / exact - 1.0).abs() < 1e-12);
+    let fine = values(64);
+    for (elements, errors) in [
+        (2, [1.61e-3, 5.90e-2]),
+        (4, [1.00e-4, 3.76e-3]),
+        (8, [6.28e-6, 2.43e-4]),
+        (16, [3.89e-7, 1.53e-5]),
+    ] {
+        let found = values(elements);
+        for (k, error) in errors.into_iter().enumerate() {
+            let own = found[1 + k] / fine[1 + k] - 1.0;
+            assert!((own / error - 1.0).abs() < 0.02, "{elements} {k}: {own}");
+        }
+    }
+}

@@ -9,7 +9,7 @@ use flexbody_driver::check;
 use flexbody_mechanics::system::equilibrium::Whirl;
 use flexbody_problem::Problem;
 use nalgebra::DMatrix;
-use serde_json::Value;
+use serde_json::{Map, Value};
 use std::f64::consts::PI;
 
 fn assert_near(found: &[f64], expected: &[f64], part: f64) {
@@ -460,14 +460,27 @@ fn the_critical_speed_is_the_same_about_oblique_axes() {
         file["bodies"] = json!({"d": {
             "mass": mass, "inertia": {"xx": along, "yy": across, "zz": across},
             "place": {"at": at([0.5, 0.0, 0.0]), "turn": {"matrix": rows}}}});
+        let springs = |from_centre: f64| {
+            let mut all = Map::new();
+            for s in 0..count {
+                let (sin, cos) = (2.0 * PI * f64::from(s) / f64::from(count)).sin_cos();
+                let end = at([0.5 + from_centre, 0.5 * cos, 0.5 * sin]);
+                let spring = json!({
+                    "between": ["d", "ground"], "at": {"a": [from_centre, 0, 0], "b": end},
+                    "rest_length": 0.5, "stiffness": 1000});
+                all.insert(format!("at {from_centre} {s}"), json!({"spring": spring}));
+            }
+            all
+        };
         file["joints"] = json!({"s": {"spherical": {"between": ["d", "ground"], "at": [0, 0, 0]}}});
-        file["loads"] = json!({});
-        for s in 0..count {
-            let (sin, cos) = (2.0 * PI * f64::from(s) / f64::from(count)).sin_cos();
-            file["loads"][format!("s{s}")] = json!({"spring": {
-                "between": ["d", "ground"], "at": {"a": [-0.2, 0, 0], "b": at([0.3, 0.5 * cos, 0.5 * sin])},
-                "rest_length": 0.5, "stiffness": 1000}});
-        }
+        file["loads"] = Value::Object(springs(-0.2));
         assert_near(&values(&file), &[expected], 1e-9);
+        // Without the joint, on springs at both ends, it is free along the axis as well.
+        file["joints"] = json!({});
+        let mut both = springs(-0.2);
+        both.extend(springs(0.2));
+        file["loads"] = Value::Object(both);
+        let in_one_plane = f64::from(count) * 1000.0;
+        assert_near(&values(&file), &[(in_one_plane / mass).sqrt()], 1e-9);
     }
 }
