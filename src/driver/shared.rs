@@ -75,6 +75,7 @@ pub(crate) struct CaseValues {
 #[derive(Clone, Debug, Serialize, Deserialize)]
 pub struct Elsewhere {
     /// The design.
+    #[serde(skip)]
     pub x: Vec<f64>,
     /// Values of the functions of its problem that are wanted.
     pub values: Vec<(usize, f64)>,

@@ -99,14 +99,17 @@ impl Hub {
         let (since, mut pause) = (Instant::now(), Pause::up_to(LOOK));
         while !left.is_empty() && since.elapsed() < DISMISSAL {
             left.retain(|rank| {
-                let asked = state.asking.remove(rank);
-                let asks = asked.is_some_and(|own| own.running == 0);
                 let letter = || self.post.look::<Letter>(Some(*rank), Tag::Letter);
-                match asks || letter().is_some_and(|(_, letter)| letter.running == 0) {
-                    true => self.post.send(*rank, Tag::Reply, &Reply::End),
-                    false => return true,
-                }
-                false
+                let asked = state.asking.remove(rank).map(|own| own.running);
+                let running = asked.or_else(|| Some(letter()?.1.running));
+                let reply = match running {
+                    None => return true,
+                    Some(0) => Reply::End,
+                    // Starts that were begun ahead, and that nobody waits for.
+                    Some(_) => Reply::Tasks(Vec::new(), true),
+                };
+                self.post.send(*rank, Tag::Reply, &reply);
+                running != Some(0)
             });
             pause.sleep();
         }

@@ -39,15 +39,7 @@ pub(super) fn work(post: &Post) {
             interrupted: interrupt::asked(),
         };
         post.send(0, Tag::Letter, &letter);
-        let reply = match crew.running() {
-            0 => post.wait_idle(0, Tag::Reply),
-            _ => match post.wait(0, Tag::Reply) {
-                Ok(reply) => reply,
-                // Rank 0 is gone: MPI ends this one.
-                Err(_) => post.wait_idle(0, Tag::Reply),
-            },
-        };
-        match reply {
+        match post.wait_idle(0, Tag::Reply) {
             Reply::Problems(number, descriptions) => {
                 announced = number;
                 problems = descriptions.into_iter().map(Announced::New).collect();

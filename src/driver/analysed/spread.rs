@@ -53,7 +53,7 @@ pub(super) fn values(
     let own = (0..found.len()).filter(|&c| ranks.owns(c) && !wanted[c].is_empty());
     let own = own.filter_map(|c| {
         let steps = integration.cases[c].as_ref()?;
-        told((c, &cases.list[c], &wanted[c]), steps, before[c], &found[c], x)
+        told((c, &cases.list[c], &wanted[c]), steps, before[c], &found[c])
     });
     let own = own.collect();
     let ends = must_end(integration, problem);
@@ -78,7 +78,13 @@ pub(super) fn values(
         (own.refreshes, own.unlowered) = (told.refreshes, told.unlowered);
         let refresh = reason.filter(|_| is_new).and_then(|why| own.in_use(&why));
         found[told.case] = match told.found {
-            Ok(elsewhere) => Ok(Some((Analysed::Elsewhere(Box::new(elsewhere)), refresh))),
+            Ok(found) => {
+                let found = Elsewhere {
+                    x: x.to_vec(),
+                    ..found
+                };
+                Ok(Some((Analysed::Elsewhere(Box::new(found)), refresh)))
+            }
             Err(why) => Err(AnalysisFailure::Undefined(why)),
         };
     }
@@ -91,7 +97,6 @@ fn told(
     integration: &Integration,
     before: Option<usize>,
     found: &Result<AnalysedOnce, AnalysisFailure>,
-    x: &[f64],
 ) -> Option<CaseValues> {
     let now = integration.chosen().map(|_| integration.refreshes);
     let reason = match found {
@@ -102,7 +107,7 @@ fn told(
     let steps: Option<StepsInUse> = (is_new.then(|| integration.in_use(&reason)).flatten()).map(steps_of);
     let found = match found {
         Ok(None) => return None,
-        Ok(Some((at, _))) => Ok(elsewhere(case, at, (x, wanted))),
+        Ok(Some((at, _))) => Ok(elsewhere(case, at, wanted)),
         Err(failure) => Err(failure.to_string()),
     };
     Some(CaseValues {
@@ -115,12 +120,12 @@ fn told(
     })
 }
 
-fn elsewhere(case: &Case, at: &Analysed, (x, wanted): (&[f64], &[usize])) -> Elsewhere {
+fn elsewhere(case: &Case, at: &Analysed, wanted: &[usize]) -> Elsewhere {
     let values: Vec<(usize, f64)> = wanted.iter().map(|&f| (f, at.value(f))).collect();
     let broken = values.iter().filter(|(_, value)| !value.is_finite());
     let why = |&(f, value): &(usize, f64)| (f, at.not_finite_value(&case.problem, f, value));
     Elsewhere {
-        x: x.to_vec(),
+        x: Vec::new(),
         not_finite: broken.map(why).collect(),
         values,
         work: Work::from(at.counts()),
