@@ -112,10 +112,7 @@ pub fn run(arguments: impl Iterator<Item = OsString>) -> ExitCode {
 }
 
 /// Runs the command; optimisations are spread over ranks, if there are several. Returns the exit code.
-pub(crate) fn run_over(
-    arguments: impl Iterator<Item = OsString>,
-    ranks: Option<&dyn Ranks>,
-) -> u8 {
+pub(crate) fn run_over(arguments: impl Iterator<Item = OsString>, ranks: Option<&dyn Ranks>) -> u8 {
     let mut arguments: Vec<OsString> = arguments.collect();
     // The page of the whole program fits on a screen; the manual has the rest.
     if let [_, only] = &mut arguments[..]

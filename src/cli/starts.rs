@@ -2,8 +2,8 @@
 
 use super::progress::Counter;
 use super::{Failure, INTERRUPTED, print, tell};
-use crate::driver::multi_start::{self, LocalOptimum, Run};
 use crate::driver;
+use crate::driver::multi_start::{self, LocalOptimum, Run};
 use crate::driver::ranks::{Ranks, StartLog};
 use crate::library::logs::{Logs, Start, changed};
 use crate::library::optimum::found_optima;

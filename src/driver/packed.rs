@@ -52,7 +52,11 @@ impl PackedRun {
         let problem = started_at(problem, &self.design);
         let asked: Vec<usize> = requested(&problem).collect();
         let mut integration = Integration::of(&problem, Some(&asked), true);
-        if let Some(steps) = self.steps.as_ref().and_then(|own| kept(own, self.refreshes)) {
+        if let Some(steps) = self
+            .steps
+            .as_ref()
+            .and_then(|own| kept(own, self.refreshes))
+        {
             integration.restore(steps);
         }
         integration.refreshes = self.refreshes;

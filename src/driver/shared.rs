@@ -67,6 +67,8 @@ pub(crate) struct CaseValues {
     pub unlowered: usize,
     /// Its steps, if they were chosen now.
     pub steps: Option<StepsInUse>,
+    /// Why they were chosen anew, if the record has to tell it.
+    pub reason: Option<String>,
     /// Values of its functions, or why there are none.
     pub found: Result<Elsewhere, String>,
 }
@@ -197,7 +199,12 @@ impl Shared {
     ///
     /// # Panics
     /// If the ranks are not at the same design: their numbers would belong to different ones.
-    pub(crate) fn all(&self, x: &[f64], ends: bool, content: Content) -> Result<Vec<Content>, Lost> {
+    pub(crate) fn all(
+        &self,
+        x: &[f64],
+        ends: bool,
+        content: Content,
+    ) -> Result<Vec<Content>, Lost> {
         let mut agreed = self.agreed();
         if agreed.over {
             return Err(Lost);

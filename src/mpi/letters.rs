@@ -87,7 +87,9 @@ pub(super) struct Description {
 pub(super) enum Unread {
     #[error(transparent)]
     Faults(#[from] Faults),
-    #[error("{file}: found files beside it that differ from those of rank 0, expected the same on all nodes")]
+    #[error(
+        "{file}: found files beside it that differ from those of rank 0, expected the same on all nodes"
+    )]
     Differs { file: String },
 }
 
@@ -97,7 +99,7 @@ impl Description {
             document: problem.document.to_string(),
             file: file.to_string_lossy().into_owned(),
             hash: problem.hash.clone(),
-            is_lowered: problem.lowering.is_some(),
+            is_lowered: problem.is_lowered(),
             memory: problem.simulation.memory,
         }
     }

@@ -12,7 +12,9 @@ const SOON: Duration = Duration::from_secs(5);
 
 fn send(signal: &str, process: u32) {
     // The process may have ended by itself.
-    let sent = Command::new("kill").args([signal, &process.to_string()]).output();
+    let sent = Command::new("kill")
+        .args([signal, &process.to_string()])
+        .output();
     sent.expect("kill runs");
 }
 
@@ -69,7 +71,11 @@ fn a_killed_rank_ends_all_and_the_run_resumes() {
         let has_log = files_if_any(&directory).any(|name| name.starts_with("evaluations"));
         let how = if has_log { "--resume" } else { "--output" };
         let ranks = [2, 4, 1][k as usize % 3];
-        let ran = over(ranks, at.path(), &[&arguments[..], &[how, &output]].concat());
+        let ran = over(
+            ranks,
+            at.path(),
+            &[&arguments[..], &[how, &output]].concat(),
+        );
         assert_eq!(ran.code, whole.code, "kill {k}: {}", ran.err);
         assert_eq!(optimum(&directory), expected, "kill {k}");
     }
@@ -94,14 +100,20 @@ fn an_interrupt_ends_all_and_keeps_the_log() {
     std::thread::sleep(Duration::from_secs(2));
     let parent = std::fs::read_to_string(format!("/proc/{}/stat", ranks[0])).expect("runs");
     let (_, rest) = parent.rsplit_once(')').expect("a name in brackets");
-    let mpirun = rest.split_whitespace().nth(1).and_then(|word| word.parse().ok());
+    let mpirun = rest
+        .split_whitespace()
+        .nth(1)
+        .and_then(|word| word.parse().ok());
     send("-INT", mpirun.expect("a process"));
     let (code, time) = end_of(&mut run);
     assert!(time < SOON, "{time:?}");
     assert!(code.is_none_or(|code| code != 0), "{code:?}");
     no_orphans("interrupted");
     let names: Vec<String> = files_if_any(&at.path().join("interrupted")).collect();
-    assert!(names.iter().any(|name| name.starts_with("evaluations")), "{names:?}");
+    assert!(
+        names.iter().any(|name| name.starts_with("evaluations")),
+        "{names:?}"
+    );
 }
 
 /// A signal to one rank alone: all ranks end their starts, and the best design is written.
@@ -133,7 +145,12 @@ fn a_fault_of_the_input_is_told_once() {
     assert_eq!(one.code, 2, "{}", one.err);
     let ran = over(4, at.path(), &arguments);
     assert_eq!(ran.code, 2, "{}", ran.err);
-    assert_eq!(ran.err.matches(one.err.trim_end()).count(), 1, "{}", ran.err);
+    assert_eq!(
+        ran.err.matches(one.err.trim_end()).count(),
+        1,
+        "{}",
+        ran.err
+    );
     assert!(!at.path().join("faulty").exists());
     no_orphans("faulty");
 }
@@ -147,7 +164,13 @@ fn a_full_disk_ends_all() {
     let limited = "trap '' XFSZ; ulimit -f 16; exec \"$0\" \"$@\"";
     command
         .env("OMPI_MCA_btl", "self,tcp")
-        .args(["sh", "-c", limited, env!("CARGO_BIN_EXE_optimize-mpi"), TREBUCHET])
+        .args([
+            "sh",
+            "-c",
+            limited,
+            env!("CARGO_BIN_EXE_optimize-mpi"),
+            TREBUCHET,
+        ])
         .args(["--starts", "32", "--output", "full"])
         .current_dir(at.path());
     let since = Instant::now();
@@ -163,7 +186,12 @@ fn a_full_disk_ends_all() {
 fn a_panic_ends_all() {
     let mut command = mpirun(3);
     let own = std::env::current_exe().expect("a path");
-    command.arg(own).args(["--ignored", "--exact", "ends::a_rank_that_panics", "--nocapture"]);
+    command.arg(own).args([
+        "--ignored",
+        "--exact",
+        "ends::a_rank_that_panics",
+        "--nocapture",
+    ]);
     let since = Instant::now();
     let ran = ended(&mut command);
     assert_eq!(ran.code, 101, "{}", ran.err);

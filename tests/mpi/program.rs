@@ -2,7 +2,7 @@
 
 use serde_json::{Value, json};
 use std::collections::BTreeMap;
-use std::path::{Path, PathBuf};
+use std::path::Path;
 use std::process::{Child, Command, Stdio};
 use std::time::{Duration, Instant};
 
@@ -90,19 +90,28 @@ pub fn end_of(run: &mut Child) -> (Option<i32>, Duration) {
 pub fn no_orphans(output: &str) {
     let since = Instant::now();
     while !processes(output).is_empty() {
-        assert!(since.elapsed() < Duration::from_secs(2), "{output}: ranks are left");
+        assert!(
+            since.elapsed() < Duration::from_secs(2),
+            "{output}: ranks are left"
+        );
         std::thread::sleep(Duration::from_millis(20));
     }
 }
 
-/// All files of a directory.
+/// All files below a directory.
 pub fn files(directory: &Path) -> BTreeMap<String, Vec<u8>> {
-    let entries = std::fs::read_dir(directory).expect("a directory").flatten();
-    let file = |path: PathBuf| {
-        let name = path.file_name().expect("a name").to_string_lossy().into_owned();
-        (name, std::fs::read(&path).expect("a file"))
-    };
-    entries.map(|entry| file(entry.path())).collect()
+    let mut all = BTreeMap::new();
+    for entry in std::fs::read_dir(directory).expect("a directory").flatten() {
+        let (path, name) = (entry.path(), entry.file_name());
+        let name = name.to_string_lossy().into_owned();
+        if path.is_dir() {
+            let inner = files(&path).into_iter();
+            all.extend(inner.map(|(inside, bytes)| (format!("{name}/{inside}"), bytes)));
+        } else {
+            all.insert(name, std::fs::read(&path).expect("a file"));
+        }
+    }
+    all
 }
 
 /// Asserts that two directories have the same files, byte for byte.
@@ -154,7 +163,10 @@ pub fn trebuchet_of_five(at: &Path) -> String {
     let mut document = read(Path::new(RELEASE_ANGLE));
     let case = |k: i32| {
         let gravity = -9.81 + 0.1 * f64::from(k);
-        (format!("gravity {k}"), json!({"set": {"/gravity/1": gravity}}))
+        (
+            format!("gravity {k}"),
+            json!({"set": {"/gravity/1": gravity}}),
+        )
     };
     let cases: serde_json::Map<String, Value> = (0..5).map(case).collect();
     document["gravity"] = json!([0, -9.81, 0]);

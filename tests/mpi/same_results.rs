@@ -73,7 +73,11 @@ fn one_start_without_cases() {
     let at = tempfile::tempdir().expect("a directory");
     let arguments = [&[TREBUCHET], &SHORT[..]].concat();
     over_one_to_four(at.path(), &arguments);
-    let ran = over(2, at.path(), &[&arguments[..], &["--output", "told"]].concat());
+    let ran = over(
+        2,
+        at.path(),
+        &[&arguments[..], &["--output", "told"]].concat(),
+    );
     assert!(ran.err.contains("nothing to spread"), "{}", ran.err);
 }
 
@@ -81,7 +85,7 @@ fn one_start_without_cases() {
 #[test]
 fn other_commands() {
     let at = tempfile::tempdir().expect("a directory");
-    for arguments in [&["simulate", TREBUCHET][..], &["check", TREBUCHET], &["--help"]] {
+    for arguments in [["simulate", TREBUCHET], ["check", TREBUCHET]] {
         let (one, three) = (alone(at.path(), arguments), over(3, at.path(), arguments));
         assert_eq!((three.code, three.out), (one.code, one.out));
     }
@@ -93,7 +97,12 @@ fn a_run_resumes_over_another_number_of_ranks() {
     let at = tempfile::tempdir().expect("a directory");
     let problem = crane_of_twelve(at.path());
     alone(at.path(), &[&problem, "--output", "whole"]);
-    let limit = ["--set", "/optimiser={\"evaluations\": 5}", "--output", "cut"];
+    let limit = [
+        "--set",
+        "/optimiser={\"evaluations\": 5}",
+        "--output",
+        "cut",
+    ];
     let cut = over(3, at.path(), &[&[&problem[..]], &limit[..]].concat());
     assert_eq!(cut.code, 1, "{}", cut.err);
     let ran = over(2, at.path(), &[&problem, "--resume", "cut"]);

@@ -2,7 +2,6 @@
 
 mod cases;
 mod check_cases;
-mod spread;
 
 use crate::alike::{Message, grouped};
 use crate::evaluate::{Derivative, Evaluated};
@@ -15,10 +14,10 @@ use crate::math::soft_max::Smoothed;
 use crate::problem::{Asked, Problem};
 use crate::report::optimum::{Aggregate, Integration as IntegrationRecord, Lies};
 use crate::report::with_space;
+use crate::shared::Elsewhere;
 use crate::simulate::{Simulation, simulate, simulate_with};
 use crate::statics::{self, StaticDesign, StaticsFailure};
 use crate::structures::functions::{self, Peak};
-use crate::shared::Elsewhere;
 use crate::{CheckedDerivative, composed, error, not_finite, resolved, start};
 pub use cases::InCases;
 

@@ -1,7 +1,8 @@
 //! A design in all cases of a problem: each is analysed by itself, side by side on the cores. Values and derivatives of
 //! functions over cases follow from those of the cases.
 
-use super::spread::{self, Spread};
+mod spread;
+
 use super::{Analysed, AnalysisFailure, Simulated};
 use crate::composed::{self, Derivative};
 use crate::error::FunctionError;
@@ -12,6 +13,7 @@ use crate::math::soft_max::{Far, Smoothed, two_digits};
 use crate::problem::{Case, Cases, Composition, Problem};
 use crate::report::optimum::{Aggregate, Integration as IntegrationRecord};
 use rayon::prelude::*;
+use spread::Spread;
 use std::sync::Arc;
 
 /// A smooth bound that differs from the largest value by more than this part is told.
@@ -120,7 +122,7 @@ impl<T> InCases<T> {
 }
 
 /// A case, if a function of it is asked, and the change of its steps.
-pub(super) type AnalysedOnce = Option<(Analysed, Option<Refresh>)>;
+type AnalysedOnce = Option<(Analysed, Option<Refresh>)>;
 
 impl InCases<Analysed> {
     /// Analyses the design `x` in the cases that the functions `asked` need.

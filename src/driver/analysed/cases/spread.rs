@@ -1,12 +1,12 @@
 //! Cases that are spread over ranks: each rank has some, and the numbers of all.
 
-use super::cases::{AnalysedOnce, InCases};
-use super::{Analysed, AnalysisFailure};
+use super::{AnalysedOnce, InCases};
+use crate::analysed::{Analysed, AnalysisFailure};
 use crate::integrate::WorkCounts;
 use crate::integration::{Events, Integration};
 use crate::known_evaluations::{kept, steps_of};
 use crate::problem::{Case, Cases, Problem};
-use crate::report::evaluations::{StepsInUse, Work};
+use crate::report::evaluations::Work;
 use crate::shared::{CaseGradients, CaseValues, Content, Elsewhere, Lost, Shared, counts};
 use rayon::prelude::*;
 use std::sync::{Arc, OnceLock};
@@ -66,8 +66,6 @@ pub(super) fn values(
         let Some(own) = integration.cases[told.case].as_mut() else {
             continue;
         };
-        let is_new = told.steps.is_some();
-        let reason = told.steps.as_ref().map(|steps| steps.reason.clone());
         if let Some(kept) = (told.steps.as_ref()).and_then(|steps| kept(steps, told.refreshes)) {
             own.restore(kept);
         }
@@ -76,7 +74,7 @@ pub(super) fn values(
             cases: Vec::new(),
         });
         (own.refreshes, own.unlowered) = (told.refreshes, told.unlowered);
-        let refresh = reason.filter(|_| is_new).and_then(|why| own.in_use(&why));
+        let refresh = told.reason.and_then(|why| own.in_use(&why));
         found[told.case] = match told.found {
             Ok(found) => {
                 let found = Elsewhere {
@@ -100,11 +98,12 @@ fn told(
 ) -> Option<CaseValues> {
     let now = integration.chosen().map(|_| integration.refreshes);
     let reason = match found {
-        Ok(Some((_, Some(refresh)))) => refresh.reason.clone(),
-        _ => String::new(),
+        Ok(Some((_, Some(refresh)))) => Some(refresh.reason.clone()),
+        _ => None,
     };
-    let is_new = now != before || !reason.is_empty();
-    let steps: Option<StepsInUse> = (is_new.then(|| integration.in_use(&reason)).flatten()).map(steps_of);
+    let is_new = now != before || reason.is_some();
+    let steps = is_new.then(|| integration.in_use("on another rank"));
+    let steps = steps.flatten().map(steps_of);
     let found = match found {
         Ok(None) => return None,
         Ok(Some((at, _))) => Ok(elsewhere(case, at, wanted)),
@@ -116,6 +115,7 @@ fn told(
         refreshes: integration.refreshes,
         unlowered: integration.unlowered,
         steps,
+        reason,
         found,
     })
 }
