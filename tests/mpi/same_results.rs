@@ -85,7 +85,8 @@ fn one_start_without_cases() {
 #[test]
 fn other_commands() {
     let at = tempfile::tempdir().expect("a directory");
-    for arguments in [["simulate", TREBUCHET], ["check", TREBUCHET]] {
+    for command in ["simulate", "check"] {
+        let arguments = &[command, TREBUCHET];
         let (one, three) = (alone(at.path(), arguments), over(3, at.path(), arguments));
         assert_eq!((three.code, three.out), (one.code, one.out));
     }
