@@ -53,11 +53,14 @@
 //! | `figures` | figures, the page of a result, fields and tables |
 //! | `library` | the public interface: simulate, differentiate, check and optimise a problem |
 //! | `cli` | the command line |
+//! | `mpi` | the command over processes of MPI |
 
 #![warn(missing_docs)]
 
 pub mod cli;
 mod library;
+#[cfg(feature = "mpi")]
+pub mod mpi;
 
 use flexbody_driver as driver;
 use flexbody_figures as figures;

@@ -28,6 +28,13 @@ pub(crate) fn heed() {
     HEEDED.store(true, Ordering::Relaxed);
 }
 
+/// Makes the work end as an interrupt does.
+#[cfg(feature = "mpi")]
+pub(crate) fn ask() {
+    ASKED.store(true, Ordering::Relaxed);
+    progress().end_by(Instant::now());
+}
+
 /// Whether the work must end.
 pub(crate) fn asked() -> bool {
     ASKED.load(Ordering::Relaxed)

@@ -8,14 +8,14 @@ mod earlier;
 mod error_table;
 mod explain;
 mod installation;
-mod interrupt;
+pub(crate) mod interrupt;
 mod modes;
 mod motion;
 mod new;
 mod one_start;
 mod optimise;
 mod parameters;
-mod progress;
+pub(crate) mod progress;
 mod range;
 mod simulate;
 mod stability;
@@ -28,6 +28,7 @@ use crate::driver;
 use crate::driver::accuracy;
 use crate::driver::aggregates::{ChosenRho, Unread};
 use crate::driver::ends::Ends;
+use crate::driver::ranks::Ranks;
 use crate::figures;
 use crate::library::written::{self, PageError};
 use crate::problem::{Override, Problem, visible, visible_lines};
@@ -107,6 +108,11 @@ fn code_of_reading(error: &io::Error) -> u8 {
 
 /// Runs the command with the given arguments; the first is the program's name.
 pub fn run(arguments: impl Iterator<Item = OsString>) -> ExitCode {
+    ExitCode::from(run_over(arguments, None))
+}
+
+/// Runs the command; optimisations are spread over ranks, if there are several. Returns the exit code.
+pub(crate) fn run_over(arguments: impl Iterator<Item = OsString>, ranks: Option<&dyn Ranks>) -> u8 {
     let mut arguments: Vec<OsString> = arguments.collect();
     // The page of the whole program fits on a screen; the manual has the rest.
     if let [_, only] = &mut arguments[..]
@@ -143,11 +149,10 @@ pub fn run(arguments: impl Iterator<Item = OsString>) -> ExitCode {
             if !wanted && let Some(hint) = unknown_word::meant(Path::new(&first)) {
                 tell(&format!("\n  {hint}\n"));
             }
-            return ExitCode::from(if wanted && shown.is_ok() {
-                DONE
-            } else {
-                BAD_INPUT
-            });
+            return match wanted && shown.is_ok() {
+                true => DONE,
+                false => BAD_INPUT,
+            };
         }
     };
     interrupt::listen();
@@ -178,16 +183,16 @@ pub fn run(arguments: impl Iterator<Item = OsString>) -> ExitCode {
         Some(Command::Report { directory }) => compare::report(&directory),
         Some(Command::Schema) => compare::schema(),
         None => match arguments.job {
-            Some(job) => optimise::optimise(&job, &arguments.course),
+            Some(job) => optimise::optimise(&job, &arguments.course, ranks),
             None => Err(Failure::bad_input("no problem file; see optimize --help")),
         },
     };
     progress::hide_bar();
     match done {
-        Ok(code) => ExitCode::from(code),
+        Ok(code) => code,
         Err(failure) => {
             tell(&format!("{}\n", failure.message.trim_end()));
-            ExitCode::from(failure.code)
+            failure.code
         }
     }
 }

@@ -2,6 +2,7 @@
 
 use super::progress::show;
 use super::{Failure, tell};
+use crate::driver::ranks::Ranks;
 use crate::driver::{self, Optimisation, WarmStart};
 use crate::figures::report_page::so_far;
 use crate::library::logs::{Logs, Start, changed};
@@ -26,6 +27,7 @@ pub(super) fn one(
     records: &Logs,
     stopped: &dyn Fn() -> bool,
     (quiet, watch): (bool, bool),
+    ranks: Option<&dyn Ranks>,
 ) -> Result<(Optimisation, Option<ReportError>), Failure> {
     let opened = records.open(Start::Only, problem)?;
     if !quiet {
@@ -61,9 +63,13 @@ pub(super) fn one(
             ControlFlow::Continue(())
         }
     };
-    let known = opened.known_evaluations(&fault, (!quiet).then_some(tell));
     let state = state.map(|warm| &warm.state);
-    let done = driver::optimise(problem, file, state, known, &mut progress);
+    let shared = ranks.and_then(|ranks| ranks.share_cases(problem, state, opened.earlier()));
+    if let (Some(_), None, false) = (ranks, &shared, quiet) {
+        tell("one start and no cases: there is nothing to spread over ranks\n");
+    }
+    let known = opened.known_evaluations(&fault, (!quiet).then_some(tell));
+    let done = driver::optimise_over(problem, file, state, known, shared, &mut progress);
     let lost = unwritable
         .into_inner()
         .or(fault.into_inner().ok().flatten());

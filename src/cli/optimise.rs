@@ -10,6 +10,7 @@ use super::{
     shown, tell, warn_of_missing, write_report,
 };
 use crate::driver::ends::Ends;
+use crate::driver::ranks::Ranks;
 use crate::driver::{self, Optimisation, WarmStart, certificate};
 use crate::figures;
 use crate::library::logs::{Logs, Start, without_run};
@@ -25,11 +26,18 @@ use std::sync::Mutex;
 use std::time::Instant;
 
 /// Optimises a problem and writes its results.
-pub(crate) fn optimise(job: &Job, course: &RunOptions) -> Result<u8, Failure> {
+pub(crate) fn optimise(
+    job: &Job,
+    course: &RunOptions,
+    ranks: Option<&dyn Ranks>,
+) -> Result<u8, Failure> {
     let problem = read(job)?;
     complete(&problem, job)?;
+    if let Some(ranks) = ranks {
+        ranks.read_from(&job.problem);
+    }
     if let Some(range) = &course.sweep {
-        return sweep(job, &problem, range, course.starts.unwrap_or(1));
+        return sweep(job, &problem, range, course.starts.unwrap_or(1), ranks);
     }
     let parameters = course.sensitivity.iter();
     let parameters = parameters.map(|path| parameter(job, &problem, path));
@@ -75,7 +83,7 @@ pub(crate) fn optimise(job: &Job, course: &RunOptions) -> Result<u8, Failure> {
         .map_or_else(String::new, |n| n.to_string_lossy().into());
     let (problem, mut done, start, optima, lost) = match starts {
         Some(starts) => {
-            let found = several(&problem, &starts, &records, &stopped, job.quiet)?;
+            let found = several(&problem, &starts, &records, &stopped, (job.quiet, ranks))?;
             let (run, optima, lost) = found;
             let done = run.solved.complete(&run.problem, &file);
             let start = Start::OneOf(run.start);
@@ -89,6 +97,7 @@ pub(crate) fn optimise(job: &Job, course: &RunOptions) -> Result<u8, Failure> {
                 &records,
                 &stopped,
                 (job.quiet, course.watch),
+                ranks,
             )?;
             (problem, done, Start::Only, None, lost)
         }

@@ -8,7 +8,8 @@ use super::{
     DONE, Failure, INTERRUPTED, NOT_REACHED, interrupt, no_page, overrides, print, read_with,
     shown, tell,
 };
-use crate::driver::{self, Optimisation};
+use crate::driver::ranks::Ranks;
+use crate::driver::{self, KnownEvaluations, Optimisation};
 use crate::figures::plots;
 use crate::problem::{Override, Problem};
 use crate::report::optimum::Sensitivity;
@@ -131,7 +132,13 @@ fn write(found: &Sweep, directory: &Path) -> Result<(), Failure> {
 /// Optimises for each value of a parameter, each from the last optimum before and from so many `starts` of the
 /// problem, the first of which is that of the file. Writes the optima so far after each value, so that an
 /// interrupted sweep leaves them and the next one continues.
-pub(super) fn sweep(job: &Job, base: &Problem, range: &Range, starts: u32) -> Result<u8, Failure> {
+pub(super) fn sweep(
+    job: &Job,
+    base: &Problem,
+    range: &Range,
+    starts: u32,
+    ranks: Option<&dyn Ranks>,
+) -> Result<u8, Failure> {
     not_designed(base, "--sweep", &range.path)?;
     no_page(job, "--sweep")?;
     if job.accuracy.is_some() {
@@ -168,12 +175,25 @@ pub(super) fn sweep(job: &Job, base: &Problem, range: &Range, starts: u32) -> Re
         tell(&format!("continues after {known} of {all} optima\n"));
     }
     let counter = (!job.quiet).then(|| Counter::new("values", problems.len() - known));
-    for (value, problem) in range.values().zip(problems).skip(known) {
+    if let Some(ranks) = ranks {
+        let left = problems.iter().skip(known);
+        let started = left.map(|problem| Ok((problem.clone(), spread(problem, starts)?)));
+        ranks.announce(started.collect::<Result<_, Failure>>()?);
+    }
+    for (k, (value, problem)) in range.values().zip(problems).skip(known).enumerate() {
         let last = found.iter().flat_map(|sweep| &sweep.optima);
         let last = last.rev().find(|optimum| optimum.converged);
         let last = last.map(|optimum| optimum.design.clone());
-        let starts = spread(&problem, starts)?;
-        let swept = driver::swept(&problem, value, (last, starts), &interrupt::asked);
+        let from_last = last.is_some();
+        let runs = match ranks {
+            Some(ranks) => ranks.multi_start(k, last, &interrupt::asked, None),
+            None => {
+                let all: Vec<_> = last.into_iter().chain(spread(&problem, starts)?).collect();
+                let unknown = |_: usize, _: &Problem| Some(KnownEvaluations::default());
+                driver::multi_start(&problem, &all, &interrupt::asked, &unknown)
+            }
+        };
+        let swept = driver::swept(&problem, value, runs, from_last);
         if interrupt::asked() {
             let table = directory.join(TABLE);
             tell(&match found.map_or(0, |sweep| sweep.optima.len()) {

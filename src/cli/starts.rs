@@ -2,8 +2,9 @@
 
 use super::progress::Counter;
 use super::{Failure, INTERRUPTED, print, tell};
+use crate::driver;
 use crate::driver::multi_start::{self, LocalOptimum, Run};
-use crate::driver::{self, KnownEvaluations};
+use crate::driver::ranks::{Ranks, StartLog};
 use crate::library::logs::{Logs, Start, changed};
 use crate::library::optimum::found_optima;
 use crate::problem::Problem;
@@ -29,7 +30,7 @@ pub(crate) fn several(
     starts: &[Vec<f64>],
     records: &Logs,
     stopped: &(dyn Fn() -> bool + Sync),
-    quiet: bool,
+    (quiet, ranks): (bool, Option<&dyn Ranks>),
 ) -> Result<(Run, String, Option<ReportError>), Failure> {
     let fault: Mutex<Option<ReportError>> = Mutex::new(None);
     let told = AtomicBool::new(quiet);
@@ -38,7 +39,7 @@ pub(crate) fn several(
     let processors = std::thread::available_parallelism().map_or(1, usize::from);
     let begun = AtomicUsize::new(0);
     let counter = (!quiet).then(|| Counter::new("starts done", starts.len()));
-    let open = |k: usize, problem: &Problem| -> Option<KnownEvaluations<'_>> {
+    let open = |k: usize, problem: &Problem| -> Option<StartLog<'_>> {
         if begun.fetch_add(1, Ordering::Relaxed) >= processors
             && let Some(counter) = &counter
         {
@@ -51,7 +52,7 @@ pub(crate) fn several(
                 if !opened.changes.is_empty() && !told.swap(true, Ordering::Relaxed) {
                     tell(&changed(&opened.changes));
                 }
-                Some(opened.known_evaluations(&fault, None))
+                Some(opened.start_log(&fault, None))
             }
             Err(error) => {
                 if let Ok(mut first) = fault.lock() {
@@ -63,7 +64,16 @@ pub(crate) fn several(
     };
     let has_failed = || fault.lock().is_ok_and(|error| error.is_some());
     let ended = || stopped() || has_failed();
-    let mut runs = driver::multi_start(problem, starts, &ended, &open);
+    let mut runs = match ranks {
+        Some(ranks) => {
+            ranks.announce(vec![(problem.clone(), starts.to_vec())]);
+            ranks.multi_start(0, None, &ended, Some(&open))
+        }
+        None => {
+            let known = |k: usize, problem: &Problem| Some(open(k, problem)?.into());
+            driver::multi_start(problem, starts, &ended, &known)
+        }
+    };
     drop(counter);
     let lost = fault.lock().ok().and_then(|mut first| first.take());
     if !quiet {

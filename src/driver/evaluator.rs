@@ -4,6 +4,7 @@ use super::analysed::Analysed;
 use super::fit;
 use super::integration::Integration;
 use super::known_evaluations::{EvaluationContext, KnownEvaluations, bits};
+use super::shared::Shared;
 use super::speculation::SpeculativeCache;
 use crate::optimiser::{Evaluation, EvaluationFailure, Gradients, Jacobian, Nlp, Residuals};
 use crate::problem::{Problem, Sense};
@@ -11,6 +12,8 @@ use crate::report::evaluations::Work;
 use std::cell::RefCell;
 use std::collections::HashMap;
 use std::rc::Rc;
+use std::sync::Arc;
+use std::time::Instant;
 
 /// The steps of an evaluation.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -55,18 +58,29 @@ pub struct Evaluator<'a> {
 impl<'a> Evaluator<'a> {
     /// The program that `problem` states, or `None` if it has no objective.
     pub fn new(problem: &'a Problem, log: KnownEvaluations<'a>) -> Option<Self> {
+        Self::shared(problem, log, None)
+    }
+
+    /// The same, with its cases spread over ranks, if any.
+    pub fn shared(
+        problem: &'a Problem,
+        log: KnownEvaluations<'a>,
+        ranks: Option<Arc<Shared>>,
+    ) -> Option<Self> {
         let objective = problem.objective?;
         let sign = match objective.sense {
             Sense::Minimise => 1.0,
             Sense::Maximise => -1.0,
         };
         let asked = asked(problem, objective.function);
+        let mut integration = Integration::of(problem, Some(&asked), true);
+        integration.shared = ranks;
         Some(Self {
             problem,
             objective: objective.function,
             sign,
             last: None,
-            integration: Integration::of(problem, Some(&asked), true),
+            integration,
             unlowered: 0,
             log,
             speculative: SpeculativeCache::default(),
@@ -182,7 +196,7 @@ fn at<'e>(
     integration.settle(None);
     account.events = integration.events();
     let found = found.map_err(|failure| {
-        account.interrupted = problem.simulation.limits.is_over();
+        account.interrupted = integration.is_over();
         failure.to_string()
     });
     Ok(last.insert(found?))
@@ -234,7 +248,17 @@ impl Nlp for Evaluator<'_> {
     }
 
     fn is_interrupted(&self) -> bool {
-        self.problem.simulation.limits.is_over()
+        match &self.integration.shared {
+            Some(ranks) => ranks.is_over(),
+            None => self.problem.simulation.limits.is_over(),
+        }
+    }
+
+    fn seconds_since(&self, started: Instant) -> f64 {
+        match &self.integration.shared {
+            Some(ranks) => ranks.seconds(),
+            None => started.elapsed().as_secs_f64(),
+        }
     }
 
     fn evaluate(&mut self, x: &[f64]) -> Result<Evaluation, EvaluationFailure> {
@@ -308,15 +332,20 @@ impl Nlp for Evaluator<'_> {
                 account.work += own;
                 return Ok(gradients);
             }
+            let ranks = integration.shared.clone();
             let (made, steps) = ((last, speculative), (integration, &mut *account));
             let asked = (problem, &functions[..]);
             let at = at(made, steps, asked, &x)?;
+            let is_over = || match &ranks {
+                Some(ranks) => ranks.is_over(),
+                None => problem.simulation.limits.is_over(),
+            };
             if let Some(why) = no_gradient(problem, at, functions[0]) {
                 return Err(why);
             }
             let found = at.gradients(problem, &functions);
             let (gradients, work) = found.map_err(|failure| {
-                account.interrupted = problem.simulation.limits.is_over();
+                account.interrupted = is_over();
                 failure.to_string()
             })?;
             account.work += work;
@@ -327,6 +356,10 @@ impl Nlp for Evaluator<'_> {
             }
             if !std::mem::replace(judged, true) {
                 *refused = at.refused(problem, &functions, &gradients);
+                if ranks.is_some() && is_over() {
+                    account.interrupted = true;
+                    return Err("interrupted".into());
+                }
                 if let Some(reason) = &*refused {
                     return Err(reason.clone());
                 }
@@ -348,7 +381,9 @@ impl Nlp for Evaluator<'_> {
 
     fn residuals(&mut self, x: &[f64]) -> Result<Option<Residuals>, EvaluationFailure> {
         let problem = self.problem;
-        let Some(misfits) = fit::fitted(problem) else {
+        // A fit has no cases.
+        let alone = self.integration.shared.is_none();
+        let Some(misfits) = fit::fitted(problem).filter(|_| alone) else {
             return Ok(None);
         };
         let x = unscaled(problem, x);

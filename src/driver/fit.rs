@@ -320,7 +320,7 @@ impl Analysed {
         match self {
             Self::Motion(at) => Ok(of_motion(problem, at, misfits)?),
             Self::Statics(at) => Ok(Some(of_structures(problem, at, misfits)?)),
-            Self::Cases(_) => Ok(None),
+            Self::Cases(_) | Self::Elsewhere(_) => Ok(None),
         }
     }
 }

@@ -6,6 +6,7 @@ mod tangent;
 use super::event::{self, Admit};
 use super::flexible_limits;
 use super::memory;
+use super::shared::Shared;
 use crate::functions::resolution::{Resolution, resolution};
 use crate::functions::{Function, Reduction, Scene};
 use crate::integrate::{
@@ -13,6 +14,8 @@ use crate::integrate::{
     Trajectory, choice, has_kinks, simulate, simulate_by,
 };
 use crate::problem::{Case, Problem};
+use serde::{Deserialize, Serialize};
+use std::sync::Arc;
 
 /// Samples of a motion with steps by tolerance, for tables, figures and events.
 const SAMPLES: usize = 1000;
@@ -63,10 +66,12 @@ pub struct Integration {
     pub settled: Option<f64>,
     /// By case of a problem with cases: its integration, if a function of it is asked.
     pub cases: Vec<Option<Integration>>,
+    /// The ranks over which the cases are spread, if they are.
+    pub(crate) shared: Option<Arc<Shared>>,
 }
 
 /// When motions end at an event, if they do \[s\].
-#[derive(Clone, Debug, Default, PartialEq)]
+#[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
 pub struct Events {
     /// That of the scene.
     pub own: Option<f64>,
@@ -163,6 +168,7 @@ impl Integration {
             event: None,
             settled: None,
             cases: Vec::new(),
+            shared: None,
         }
     }
 
@@ -188,6 +194,7 @@ impl Integration {
             event: None,
             settled: None,
             cases: Self::of_cases(problem, asked, gradients),
+            shared: None,
         }
     }
 
@@ -316,6 +323,14 @@ impl Integration {
         };
         self.chosen = Some((settings, reason));
         refresh
+    }
+
+    /// Whether the run must end, as all ranks know it if its cases are spread.
+    pub(super) fn is_over(&self) -> bool {
+        match &self.shared {
+            Some(shared) => shared.is_over(),
+            None => self.limits.is_over(),
+        }
     }
 
     /// Number of steps of the motion, if known.

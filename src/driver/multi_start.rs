@@ -86,29 +86,50 @@ pub fn multi_start<'j>(
         if stopped() {
             return None;
         }
-        let mut problem = started_at(problem, design);
-        if let Some(seconds) = &mut problem.optimiser.seconds {
-            *seconds = (*seconds - begun.elapsed().as_secs_f64()).max(0.0);
-            if *seconds == 0.0 && start > 0 {
-                return None;
-            }
-        }
+        let problem = begin(problem, (start, design), begun)?;
         let log = open(start, &problem)?;
-        let mut progress = |_: &_| {
-            if stopped() {
-                ControlFlow::Break(())
-            } else {
-                ControlFlow::Continue(())
-            }
-        };
-        let solved = solve(&problem, None, log, &mut progress)?;
-        Some(Run {
-            start,
-            problem,
-            solved,
-        })
+        run(start, problem, log, stopped)
     };
     starts.par_iter().enumerate().filter_map(run).collect()
+}
+
+/// The problem of a start, with what is left of the time limit of all runs, which began at `begun`. None if nothing is
+/// left, except for the first start.
+pub fn begin(
+    problem: &Problem,
+    (start, design): (usize, &[f64]),
+    begun: Instant,
+) -> Option<Problem> {
+    let mut problem = started_at(problem, design);
+    if let Some(seconds) = &mut problem.optimiser.seconds {
+        *seconds = (*seconds - begun.elapsed().as_secs_f64()).max(0.0);
+        if *seconds == 0.0 && start > 0 {
+            return None;
+        }
+    }
+    Some(problem)
+}
+
+/// Optimises from one start, until `stopped`.
+pub fn run(
+    start: usize,
+    problem: Problem,
+    log: KnownEvaluations<'_>,
+    stopped: &dyn Fn() -> bool,
+) -> Option<Run> {
+    let mut progress = |_: &_| {
+        if stopped() {
+            ControlFlow::Break(())
+        } else {
+            ControlFlow::Continue(())
+        }
+    };
+    let solved = solve(&problem, None, log, &mut progress)?;
+    Some(Run {
+        start,
+        problem,
+        solved,
+    })
 }
 
 /// Distinct optima of the converged runs, best first.

@@ -9,12 +9,14 @@ use super::integration::Integration;
 use super::known_evaluations::{KnownEvaluations, bits};
 use super::record::record;
 use super::resolved;
+use super::shared::Shared;
 use crate::optimiser::{self, Method, Observer, Options, Outcome, Phase, Row, SavedState, Status};
 use crate::problem::{Case, Problem};
 use crate::report::evaluations::Work;
 use crate::report::history::{Column, History, HistoryRow};
 use crate::report::optimum::Optimum;
 use std::ops::ControlFlow;
+use std::sync::Arc;
 use std::time::Duration;
 
 /// Time for the simulations of both ends after an interrupt. A result that takes longer is left out.
@@ -28,11 +30,11 @@ pub struct Solved {
     pub history: History,
     /// The steps in use at the end.
     pub integration: Integration,
-    sign: f64,
-    counts: Work,
-    unlowered: usize,
-    without_values: Option<String>,
-    without_gradients: Option<String>,
+    pub(super) sign: f64,
+    pub(super) counts: Work,
+    pub(super) unlowered: usize,
+    pub(super) without_values: Option<String>,
+    pub(super) without_gradients: Option<String>,
 }
 
 /// A finished optimisation.
@@ -62,7 +64,20 @@ pub fn optimise<'a>(
     log: KnownEvaluations<'a>,
     progress: &mut dyn FnMut(&History) -> ControlFlow<()>,
 ) -> Option<Optimisation> {
-    Some(solve(problem, from, log, progress)?.complete(problem, file))
+    optimise_over(problem, file, from, log, None, progress)
+}
+
+/// As [`optimise`], with the cases of the problem spread over ranks, if there are any; the others call
+/// [`solve_over`].
+pub fn optimise_over<'a>(
+    problem: &'a Problem,
+    file: &str,
+    from: Option<&SavedState>,
+    log: KnownEvaluations<'a>,
+    ranks: Option<Arc<Shared>>,
+    progress: &mut dyn FnMut(&History) -> ControlFlow<()>,
+) -> Option<Optimisation> {
+    Some(solve_over(problem, from, log, ranks, progress)?.complete(problem, file))
 }
 
 /// As [`optimise`], without the simulations of its ends.
@@ -72,7 +87,19 @@ pub fn solve<'a>(
     log: KnownEvaluations<'a>,
     progress: &mut dyn FnMut(&History) -> ControlFlow<()>,
 ) -> Option<Solved> {
-    let mut program = Evaluator::new(problem, log)?;
+    solve_over(problem, from, log, None, progress)
+}
+
+/// As [`solve`], with the cases of the problem spread over ranks, if there are any. All ranks call it with the same
+/// problem, state and known evaluations, and end with the same result.
+pub fn solve_over<'a>(
+    problem: &'a Problem,
+    from: Option<&SavedState>,
+    log: KnownEvaluations<'a>,
+    ranks: Option<Arc<Shared>>,
+    progress: &mut dyn FnMut(&History) -> ControlFlow<()>,
+) -> Option<Solved> {
+    let mut program = Evaluator::shared(problem, log, ranks.clone())?;
     if problem.variables.is_empty() {
         return None;
     }
@@ -82,6 +109,7 @@ pub fn solve<'a>(
         sign,
         history: empty_history(problem),
         judgements: program.judgements.clone(),
+        ranks: ranks.clone(),
         progress,
     };
     let options = options(problem);
@@ -100,6 +128,10 @@ pub fn solve<'a>(
         if outcome.status == Status::Interrupted {
             outcome.status = Status::TimeLimit;
         }
+    }
+    if let Some(ranks) = ranks {
+        ranks.end(&outcome.x);
+        program.integration.shared = None;
     }
     Some(Solved {
         outcome,
@@ -281,6 +313,8 @@ struct Recorder<'a> {
     sign: f64,
     history: History,
     judgements: Judgements,
+    /// The ranks over which cases are spread.
+    ranks: Option<Arc<Shared>>,
     progress: &'a mut dyn FnMut(&History) -> ControlFlow<()>,
 }
 
@@ -317,7 +351,14 @@ impl Observer for Recorder<'_> {
             design,
             constraints: row.constraints.to_vec(),
         });
-        (self.progress)(&self.history)
+        match ((self.progress)(&self.history), &self.ranks) {
+            // All ranks end after their next exchange.
+            (ControlFlow::Break(()), Some(ranks)) => {
+                ranks.wish_end();
+                ControlFlow::Continue(())
+            }
+            (course, _) => course,
+        }
     }
 }
 

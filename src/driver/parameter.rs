@@ -2,7 +2,7 @@
 
 use super::evaluator::Evaluator;
 use super::known_evaluations::KnownEvaluations;
-use super::multi_start::{best, distinct, multi_start};
+use super::multi_start::{Run, best, distinct};
 use crate::optimiser::{EvaluationFailure, Nlp, Outcome};
 use crate::problem::Problem;
 use crate::report::SweptOptimum;
@@ -37,19 +37,15 @@ pub fn sensitivity(problem: &Problem, outcome: &Outcome) -> Result<Option<f64>, 
 type Columns = (Column, Vec<Column>, Vec<Column>);
 
 /// The best optimum of `problem`, in which a parameter has the value `value`, and the names of its numbers. The
-/// runs start at the optimum before, if any, and at `starts`, the first of which is that of the file. `None` if
-/// there is nothing to optimise, or `stopped` before a run began.
+/// `runs` start at the optimum before, if `from_last`, and at several starts, the first of which is that of the file.
+/// `None` if there are none.
 pub fn swept(
     problem: &Problem,
     value: f64,
-    (last, starts): (Option<Vec<f64>>, Vec<Vec<f64>>),
-    stopped: &(dyn Fn() -> bool + Sync),
+    mut runs: Vec<Run>,
+    from_last: bool,
 ) -> Option<(Columns, SweptOptimum)> {
-    let warm = usize::from(last.is_some());
-    let all: Vec<Vec<f64>> = last.into_iter().chain(starts).collect();
-    let mut runs = multi_start(problem, &all, stopped, &|_, _| {
-        Some(KnownEvaluations::default())
-    });
+    let warm = usize::from(from_last);
     let evaluations = runs
         .iter()
         .map(|run| run.solved.outcome.counts.evaluations)

@@ -24,8 +24,11 @@ pub(super) struct SpeculativeCache {
 }
 
 /// Whether simulations may run side by side: steps are in use, and there is no event whose search
-/// starts at the last one.
+/// starts at the last one. Cases that are spread over ranks are computed when all ask for them.
 fn is_possible(problem: &Problem, integration: &Integration) -> bool {
+    if integration.shared.is_some() {
+        return false;
+    }
     if problem.statics.is_some() {
         return rayon::current_num_threads() > 1;
     }

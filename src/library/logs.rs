@@ -1,6 +1,7 @@
 //! The evaluation logs of a run, new or resumed.
 
 use crate::driver::integration::FIRST_DESIGN;
+use crate::driver::ranks::StartLog;
 use crate::driver::{KnownEvaluations, known_evaluations};
 use crate::problem::{Problem, visible};
 use crate::report::ReportError;
@@ -128,10 +129,28 @@ impl Opened {
         fault: &Mutex<Option<ReportError>>,
         tell: Option<fn(&str)>,
     ) -> KnownEvaluations<'_> {
+        self.start_log(fault, tell).into()
+    }
+
+    /// The evaluations of an earlier run.
+    pub(crate) fn earlier(&self) -> &[EvaluationRecord] {
+        &self.earlier
+    }
+
+    /// As [`Opened::known_evaluations`], for a start that another process may run.
+    pub(crate) fn start_log(
+        self,
+        fault: &Mutex<Option<ReportError>>,
+        tell: Option<fn(&str)>,
+    ) -> StartLog<'_> {
+        let earlier = self.earlier;
         let Some(mut log) = self.log else {
-            return KnownEvaluations::new(self.earlier, |_| {});
+            return StartLog {
+                earlier,
+                record: Box::new(|_| {}),
+            };
         };
-        KnownEvaluations::new(self.earlier, move |evaluation| {
+        let record = move |evaluation: EvaluationRecord| {
             // The first choice of equal steps needs no report.
             let told = |steps: &StepsInUse| !steps.ends.is_empty() || steps.reason != FIRST_DESIGN;
             if let (Some(tell), Found::Steps(steps)) = (tell, &evaluation.found)
@@ -151,7 +170,11 @@ impl Opened {
             {
                 first.get_or_insert(error);
             }
-        })
+        };
+        StartLog {
+            earlier,
+            record: Box::new(record),
+        }
     }
 }
 

@@ -1,6 +1,7 @@
 //! The smooth nonlinear program that the optimiser solves.
 
 use serde::{Deserialize, Serialize};
+use std::time::Instant;
 
 use crate::linear::curvature::Curvature;
 use crate::linear::jacobian::Jacobian;
@@ -46,6 +47,12 @@ pub trait Nlp {
     /// Whether the run must end: an evaluation that has just failed says nothing of its point then.
     fn is_interrupted(&self) -> bool {
         false
+    }
+
+    /// Wall time since `started` \[s\], by which the run is limited. Processes that solve the same program side by side
+    /// must know it alike, or one would end before the others.
+    fn seconds_since(&self, started: Instant) -> f64 {
+        started.elapsed().as_secs_f64()
     }
 
     /// Objective and constraints at `x`.

@@ -244,7 +244,7 @@ impl<'a> Program<'a> {
 
     /// Wall time since the start of the run \[s\].
     pub(crate) fn seconds(&self) -> f64 {
-        self.started.elapsed().as_secs_f64()
+        self.nlp.seconds_since(self.started)
     }
 
     /// Allows the running method these shares of all iterations and evaluations.

@@ -14,7 +14,7 @@ pub struct Column {
 }
 
 /// One iteration of an optimisation.
-#[derive(Clone, Debug, Default, PartialEq)]
+#[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
 pub struct HistoryRow {
     /// Iteration; the start is 0.
     pub iteration: usize,
@@ -51,7 +51,7 @@ pub struct HistoryRow {
 }
 
 /// All iterations of an optimisation.
-#[derive(Clone, Debug, PartialEq)]
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct History {
     /// The objective's name and unit.
     pub objective: Column,

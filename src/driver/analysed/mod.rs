@@ -14,6 +14,7 @@ use crate::math::soft_max::Smoothed;
 use crate::problem::{Asked, Problem};
 use crate::report::optimum::{Aggregate, Integration as IntegrationRecord, Lies};
 use crate::report::with_space;
+use crate::shared::Elsewhere;
 use crate::simulate::{Simulation, simulate, simulate_with};
 use crate::statics::{self, StaticDesign, StaticsFailure};
 use crate::structures::functions::{self, Peak};
@@ -28,6 +29,8 @@ pub enum Analysed {
     Statics(Box<StaticDesign>),
     /// Several cases.
     Cases(Box<InCases<Analysed>>),
+    /// A case that another rank has.
+    Elsewhere(Box<Elsewhere>),
 }
 
 /// Why a design has no values or no gradients.
@@ -53,6 +56,9 @@ pub enum AnalysisFailure {
     /// A motion was requested of structures that do not move.
     #[error("the problem has structures that do not move, so there is no motion to simulate")]
     NoMotion,
+    /// The derivatives of a case were asked of a rank that does not have it.
+    #[error("another rank has the case")]
+    OnAnotherRank,
     /// Something else that a value or a derivative needs is missing.
     #[error("{0}")]
     Undefined(String),
@@ -92,6 +98,7 @@ impl Analysed {
             Self::Motion(at) => &at.x,
             Self::Statics(at) => &at.x,
             Self::Cases(at) => &at.x,
+            Self::Elsewhere(at) => &at.x,
         }
     }
 
@@ -101,6 +108,7 @@ impl Analysed {
             Self::Motion(at) => at.value(f),
             Self::Statics(at) => at.function(f).value,
             Self::Cases(at) => at.value(f),
+            Self::Elsewhere(at) => at.value(f),
         }
     }
 
@@ -110,6 +118,7 @@ impl Analysed {
             Self::Motion(at) => at.run.counts,
             Self::Statics(at) => at.counts,
             Self::Cases(at) => at.counts(),
+            Self::Elsewhere(at) => at.counts(),
         }
     }
 
@@ -125,6 +134,7 @@ impl Analysed {
         Ok(match self {
             Self::Motion(at) => at.gradients(problem, which)?,
             Self::Cases(at) => at.gradients(which)?,
+            Self::Elsewhere(_) => return Err(AnalysisFailure::OnAnotherRank),
             Self::Statics(at) => {
                 let (found, counts) = at.derivatives(problem, which)?;
                 let values = |row: Vec<_>| row.into_iter().map(|d: Derivative| d.value);
@@ -182,7 +192,7 @@ impl Analysed {
     pub(crate) fn no_derivative(&self, problem: &Problem, f: usize) -> Option<String> {
         match self {
             Self::Motion(at) => at.no_derivative(problem, f),
-            Self::Statics(_) => None,
+            Self::Statics(_) | Self::Elsewhere(_) => None,
             Self::Cases(at) => at.no_derivative(f),
         }
     }
@@ -192,6 +202,7 @@ impl Analysed {
         match self {
             Self::Motion(at) => not_finite::value(problem, at, f, value),
             Self::Cases(at) => at.not_finite_value(problem, f, value),
+            Self::Elsewhere(at) => at.not_finite_value(f),
             Self::Statics(at) if problem.composition.gives(f) => {
                 composed::not_finite(problem, f, value, &|g| at.function(g).value)
             }
@@ -214,7 +225,7 @@ impl Analysed {
                 let found = resolved::of_gradients(problem, at, which, gradients).ok()?;
                 resolved::refusal(problem, &found)
             }
-            Self::Statics(_) => None,
+            Self::Statics(_) | Self::Elsewhere(_) => None,
             Self::Cases(at) => at.refused(which),
         }
     }
@@ -228,7 +239,7 @@ impl Analysed {
     ) -> String {
         match self {
             Self::Motion(at) => not_finite::derivative(problem, at, (f, i), value),
-            Self::Statics(_) | Self::Cases(_) => format!(
+            Self::Statics(_) | Self::Cases(_) | Self::Elsewhere(_) => format!(
                 "the derivative of the function \"{}\" in the variable {} is {value}",
                 problem.function_names[f],
                 not_finite::variable(problem, i)

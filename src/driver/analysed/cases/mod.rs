@@ -1,6 +1,8 @@
 //! A design in all cases of a problem: each is analysed by itself, side by side on the cores. Values and derivatives of
 //! functions over cases follow from those of the cases.
 
+mod spread;
+
 use super::{Analysed, AnalysisFailure, Simulated};
 use crate::composed::{self, Derivative};
 use crate::error::FunctionError;
@@ -11,6 +13,7 @@ use crate::math::soft_max::{Far, Smoothed, two_digits};
 use crate::problem::{Case, Cases, Composition, Problem};
 use crate::report::optimum::{Aggregate, Integration as IntegrationRecord};
 use rayon::prelude::*;
+use spread::Spread;
 use std::sync::Arc;
 
 /// A smooth bound that differs from the largest value by more than this part is told.
@@ -25,6 +28,8 @@ pub struct InCases<T> {
     composition: Arc<Composition>,
     /// By case.
     pub list: Vec<Option<T>>,
+    /// What other ranks have of it, if its cases are spread.
+    spread: Option<Spread>,
 }
 
 /// A failure with the name of its case.
@@ -42,6 +47,7 @@ impl<T> InCases<T> {
             cases: cases.clone(),
             composition: problem.composition.clone(),
             list,
+            spread: None,
         }
     }
 
@@ -76,15 +82,17 @@ impl<T> InCases<T> {
         &self,
         which: &[usize],
         value: &(impl Fn(&T, usize) -> f64 + Sync),
-        of: &(impl Fn(&Case, &T, &[usize]) -> Result<Vec<Vec<Derivative>>, AnalysisFailure> + Sync),
+        of: &(impl Fn(usize, &T, &[usize]) -> Result<Vec<Vec<Derivative>>, AnalysisFailure> + Sync),
     ) -> Result<Vec<Vec<Derivative>>, AnalysisFailure>
     where
         T: Sync,
     {
         let wanted = self.cases.wanted(&self.composition.of_scene(which));
-        let all = self.cases.list.par_iter().zip(&self.list).zip(&wanted);
-        let rows = all.map(|((case, at), wanted)| match at {
-            Some(at) if !wanted.is_empty() => of(case, at, wanted).map_err(of_case(case)),
+        let all = self.list.par_iter().zip(&wanted).enumerate();
+        let rows = all.map(|(c, (at, wanted))| match at {
+            Some(at) if !wanted.is_empty() => {
+                of(c, at, wanted).map_err(of_case(&self.cases.list[c]))
+            }
             _ => Ok(Vec::new()),
         });
         let rows: Vec<Vec<Vec<Derivative>>> = rows.collect::<Result<_, _>>()?;
@@ -128,19 +136,29 @@ impl InCases<Analysed> {
         asked: &[usize],
     ) -> Result<(Self, Option<Refresh>), AnalysisFailure> {
         let wanted = cases.wanted(&problem.composition.of_scene(asked));
-        let all = integration
-            .cases
-            .par_iter_mut()
-            .zip(&cases.list)
-            .zip(&wanted);
-        let found = all.map(|((own, case), wanted)| match own {
-            Some(own) if !wanted.is_empty() => {
-                let found = Analysed::with(own, &case.problem, x, wanted);
-                found.map(Some).map_err(of_case(case))
-            }
-            _ => Ok(None),
-        });
+        let ranks = integration.shared.clone();
+        // Nothing is computed for a run that must end.
+        let idle = (ranks.as_ref()).is_some_and(|_| spread::must_end(integration, problem));
+        let is_own = |c: usize| !idle && ranks.as_ref().is_none_or(|ranks| ranks.owns(c));
+        let chosen = spread::chosen(integration);
+        let all = integration.cases.par_iter_mut().zip(&cases.list);
+        let found = all
+            .zip(&wanted)
+            .enumerate()
+            .map(|(c, ((own, case), wanted))| match own {
+                Some(own) if !wanted.is_empty() && is_own(c) => {
+                    Analysed::with(own, &case.problem, x, wanted).map(Some)
+                }
+                _ => Ok(None),
+            });
         // All end, so that steps and counts do not depend on which is first to fail.
+        let mut found: Vec<Result<AnalysedOnce, AnalysisFailure>> = found.collect();
+        if ranks.is_some() {
+            let of_all = (problem, &**cases, &wanted[..]);
+            spread::values(integration, of_all, x, &chosen, &mut found)?;
+        }
+        let found = found.into_iter().zip(&cases.list);
+        let found = found.map(|(found, case)| found.map_err(of_case(case)));
         let found: Vec<Result<_, AnalysisFailure>> = found.collect();
         integration.count_cases();
         let found: Vec<AnalysedOnce> = found.into_iter().collect::<Result<_, _>>()?;
@@ -154,7 +172,9 @@ impl InCases<Analysed> {
             false => integration.in_use(&reasons.join("; ")),
         };
         let list = found.into_iter().map(|own| Some(own?.0)).collect();
-        Ok((Self::new(problem, cases, x, list), refresh))
+        let spread = ranks.map(|ranks| Spread::new(ranks, wanted));
+        let found = Self::new(problem, cases, x, list);
+        Ok((Self { spread, ..found }, refresh))
     }
 
     /// The value of a function.
@@ -178,8 +198,14 @@ impl InCases<Analysed> {
         which: &[usize],
     ) -> Result<(Vec<Vec<f64>>, WorkCounts), AnalysisFailure> {
         let work = std::sync::Mutex::new(WorkCounts::default());
-        let of = |case: &Case, at: &Analysed, wanted: &[usize]| {
-            let (rows, counts) = at.gradients(&case.problem, wanted)?;
+        if let Some(spread) = &self.spread {
+            spread.differentiate(self)?;
+        }
+        let of = |c: usize, at: &Analysed, wanted: &[usize]| {
+            let (rows, counts) = match &self.spread {
+                Some(spread) => spread.gradients(c, wanted)?,
+                None => at.gradients(&self.cases.list[c].problem, wanted)?,
+            };
             if let Ok(mut work) = work.lock() {
                 *work += counts;
             }
@@ -200,7 +226,10 @@ impl InCases<Analysed> {
     pub fn no_derivative(&self, f: usize) -> Option<String> {
         self.moving(f, Analysed::value).into_iter().find_map(|k| {
             let (case, at, own) = self.place(k)?;
-            let why = at.no_derivative(&case.problem, own)?;
+            let why = match &self.spread {
+                Some(spread) => spread.kink(self, (self.cases.places[k].0, own))?,
+                None => at.no_derivative(&case.problem, own)?,
+            };
             Some(case.tell(why))
         })
     }
@@ -221,6 +250,9 @@ impl InCases<Analysed> {
 
     /// Why gradients of the functions `which` are refused, if they are.
     pub fn refused(&self, which: &[usize]) -> Option<String> {
+        if let Some(spread) = &self.spread {
+            return spread.refused(self);
+        }
         let wanted = self.cases.wanted(&self.composition.of_scene(which));
         let all = self.cases.list.iter().zip(&self.list).zip(&wanted);
         let mut all = all.filter(|(_, wanted)| !wanted.is_empty());
