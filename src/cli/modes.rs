@@ -33,7 +33,7 @@ pub(super) fn text(told: &ToldModes) -> String {
                 "  {:>4}  {:>15.9e}  {:>14.6e}{whirl}",
                 k + 1,
                 mode.frequency,
-                mode.damping_ratio
+                damping(mode)
             );
         }
     };
@@ -50,10 +50,22 @@ pub(super) fn text(told: &ToldModes) -> String {
     text
 }
 
+/// Round-off of damping ratios.
+const ROUND_OFF: f64 = 1e-12;
+
+/// The damping ratio of a mode; zero if it is round-off.
+fn damping(mode: &MachineMode) -> f64 {
+    if mode.damping_ratio.abs() < ROUND_OFF {
+        0.0
+    } else {
+        mode.damping_ratio
+    }
+}
+
 /// The same in full precision: keys of the result.
 pub(super) fn json(told: &ToldModes) -> Map<String, Value> {
     let one = |mode: &MachineMode| {
-        let mut own = json!({"frequency": mode.frequency, "damping_ratio": mode.damping_ratio});
+        let mut own = json!({"frequency": mode.frequency, "damping_ratio": damping(mode)});
         if let Some((whirl, frequency)) = mode.whirl {
             own["whirl"] = json!(name(whirl));
             own["fixed_frame_frequency"] = json!(frequency);

@@ -645,10 +645,11 @@ fn the_documents_name_commands_and_options_that_exist() {
     for command in commands.iter().filter(|command| **command != "help") {
         known += &help(&[command, "--help"]);
     }
-    // Options of cargo, git and the linter.
+    // Options of cargo, git, the linter, mpirun and Slurm.
     known += "--release --all-targets --no-deps --bench --test --lib --check --stat --locked --open \
               --path --tool --threshold --auto --call-graph --nocapture --include-ignored --ignored --all --timings \
-              --no-run";
+              --no-run --features --bin --oversubscribe --map-by --bind-to --mca --nodes --ntasks-per-node \
+              --cpus-per-task --mpi --cpu-bind";
     let options: Vec<&str> = known
         .split(|c: char| !(c.is_ascii_lowercase() || c == '-'))
         .collect();

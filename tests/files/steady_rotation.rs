@@ -410,7 +410,7 @@ fn what_cannot_turn_is_told() {
     );
     told(
         &|file| file["functions"]["c"] = json!({"critical_speed": {"number": 9}}),
-        &["critical speed 3 is asked for, and there are 2"],
+        &["critical speed 3 is not found", "there are 2"],
     );
     told(
         &|file| {

@@ -203,9 +203,11 @@ fn at_equilibrium(
                 return Ok((mean, own));
             }
             if own.all {
-                return none(format!(
-                    "critical speed {number} is asked for, and there are {there}"
-                ));
+                let about = format!("about rest at {speed:.4} rad/s");
+                return none(match there {
+                    0 => format!("critical speed {number} is not found: {about} there is none"),
+                    _ => format!("critical speed {number} is not found: {about} there are {there}"),
+                });
             }
             count *= 2;
         }

@@ -32,6 +32,8 @@ const MOVES: f64 = 0.05;
 const INVERSE: usize = 4;
 /// Largest part of the right side that the derivative of a solution leaves.
 const UNSOLVED: f64 = 1e-6;
+/// Round-off of forces, relative to the mass of the machine times its rate and its size.
+const ROUND_OFF: f64 = 64.0 * f64::EPSILON;
 
 /// A free motion of unit length in the metric, and its product with that.
 pub(super) type FreeMotion = [Vec<f64>; 2];
@@ -115,7 +117,11 @@ impl Solver<'_> {
                 .moved(&x, self.scale)
                 .max(of_reactions * largest)
         });
-        if sizes[0] <= UNSOLVED * sizes[1] {
+        // Round-off of springs without tension, which do not push along free motions.
+        let force = self.mass * found.rate * self.scale;
+        let pushes = (right[self.layout.groups()[0].clone()].iter())
+            .any(|x| x.abs() > ROUND_OFF * force * self.scale.max(1.0));
+        if sizes[0] <= UNSOLVED * sizes[1] || !pushes && sizes[0].is_finite() {
             self.keep_as_placed(factors, found, &mut change)?;
             return Ok(change);
         }
