@@ -363,6 +363,28 @@ fn a_welded_rim_is_that_of_a_support() {
     assert!((sag / expected - 1.0).abs() < 1e-3, "{sag} {expected}");
 }
 
+/// The same plate as a moving body that a weld holds at one end, with the pull at the other set on slowly: the stress beside the hole
+/// is Howland's.
+#[test]
+fn the_stress_beside_the_hole_of_a_moving_body_is_that_of_howland() {
+    let mut file = held_at_the_rim("left", json!("full"), json!({"edge": "left"}));
+    file["gravity"] = json!([0, 0, 0]);
+    // 20 kN/m on 2 mm.
+    file["materials"]["steel"]["yield_stress"] = json!(1e7);
+    file["joints"] = json!({"wall": {"weld": {"between": ["plate", "ground"], "at": "plate.rim"}}});
+    // The lowest vibration along the strip takes 0.23 ms.
+    file["loads"] = json!({"pull": {"edge": {
+        "body": "plate", "edges": "right", "direction": [1, 0, 0],
+        "magnitude": {"table": {"times": [0, 0.01, 0.02], "values": [0, 20000, 20000], "interpolation": "spline"}}
+    }}});
+    file["simulation"] = json!({"duration": 0.02, "steps": 30, "method": {"bdf": {"order": 2}}});
+    file["functions"] = json!({"stress": {"final": {"von_mises": {"body": "plate", "rho": 100}}}});
+    let problem = data("rim.json", &file);
+    let at = Simulated::of(&problem, &problem.start()).expect("a motion");
+    let peak = at.smoothed(0).expect("a true value").value;
+    assert!((peak / 3.74 - 1.0).abs() < 0.03, "{peak}");
+}
+
 /// Lines without surfaces are beams.
 #[test]
 fn lines_alone_are_beams() {
