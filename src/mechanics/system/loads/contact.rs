@@ -14,11 +14,13 @@
 //! go from the cotangents of δ, n, v, u and z to the bodies.
 
 use super::normal_law;
+use super::power::relative;
 use super::pull::{Pulled, pull_point};
 use super::{Acting, stop};
 use crate::math::scalar::length;
 use crate::math::{Scalar, Vec3};
 use crate::model::contact::{Contact, Surface};
+
 use crate::system::bodies::BodyMotion;
 use crate::system::constraint::SideCotangent;
 use crate::system::side::JointSide;
@@ -61,16 +63,6 @@ struct Slip<S> {
     tangential: Vec3<S>,
     approach: S,
     size: S,
-}
-
-/// Velocity of the point of a body that is at a place in ground axes.
-fn velocity_at<S: Scalar>(motion: &BodyMotion<S>, place: &Vec3<S>) -> Vec3<S> {
-    motion.velocity + (motion.rotation * motion.omega).cross(&(place - motion.position))
-}
-
-/// Velocity of A against B at a place.
-fn relative<S: Scalar>(at: &Acting<S>, place: &Vec3<S>) -> Vec3<S> {
-    velocity_at(at.a.motion, place) - velocity_at(at.b.motion, place)
 }
 
 fn state<S: Scalar>(contact: &Contact<S>, at: &Acting<S>) -> State<S> {
@@ -145,12 +137,6 @@ impl<S: Scalar> State<S> {
         let rate = -self.normal.dot(&self.velocity);
         normal_law::force(&contact.law, self.penetration, rate)
     }
-}
-
-/// The speed of the point of A as body B sees it: no distance from what is fixed on B changes faster.
-pub(super) fn speed<S: Scalar>(at: &Acting<S>) -> f64 {
-    let seen = relative(at, &at.a.point());
-    seen.map(Scalar::re).norm()
 }
 
 /// Whether the centre of A is where a curved surface has no normal: in the centre of a sphere or on the axis of a capsule.

@@ -1,5 +1,6 @@
 //! How near the stops and contacts of a scene are, for the control of steps.
 
+use super::power::speed_seen;
 use super::{contact, for_loads, stop};
 use crate::math::Scalar;
 use crate::model::{LoadKind, Model};
@@ -49,7 +50,7 @@ pub fn gaps<S: Scalar>(
         }
         if let LoadKind::Contact(own) = kind {
             let depth = contact::penetration(own, at).re();
-            add(depth, contact::speed(at), own.law.width);
+            add(depth, speed_seen(at), own.law.width);
         }
     });
 }

@@ -4,6 +4,7 @@ use super::Acting;
 use crate::math::scalar::length;
 use crate::math::{Scalar, Vec3};
 use crate::model::{Axes, ConstraintRow, DegreeOfFreedom, LoadKind};
+use crate::system::bodies::BodyMotion;
 use crate::system::constraint;
 use crate::system::marker::MarkerKinematics;
 use std::f64::consts::TAU;
@@ -236,6 +237,22 @@ pub(super) fn apart<S: Scalar>(at: &Acting<S>) -> SpringLength<S> {
         direction,
         apart: d,
     }
+}
+
+/// Velocity of the point of a body that is at a place in ground axes.
+pub(super) fn velocity_at<S: Scalar>(motion: &BodyMotion<S>, place: &Vec3<S>) -> Vec3<S> {
+    motion.velocity + (motion.rotation * motion.omega).cross(&(place - motion.position))
+}
+
+/// Velocity of A against B at a place.
+pub(super) fn relative<S: Scalar>(at: &Acting<S>, place: &Vec3<S>) -> Vec3<S> {
+    velocity_at(at.a.motion, place) - velocity_at(at.b.motion, place)
+}
+
+/// The speed of the point of A as body B sees it: no distance from what is fixed on B changes faster.
+pub(super) fn speed_seen<S: Scalar>(at: &Acting<S>) -> f64 {
+    let seen = relative(at, &at.a.point());
+    seen.map(Scalar::re).norm()
 }
 
 /// Hyperbolic tangent.

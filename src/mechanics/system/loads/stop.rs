@@ -8,10 +8,10 @@
 //!
 //! with N of [`super::normal_law`].
 
+use super::Acting;
 use super::normal_law::{self, NormalForce};
-use super::power::{SLIDE, angle, apart, turn_rate};
+use super::power::{SLIDE, angle, apart, speed_seen, turn_rate};
 use super::pull::{Pulled, hold_virtual, pull_angle, pull_rate, pull_row, pull_turn};
-use super::{Acting, contact};
 use crate::math::{Scalar, Vec3};
 use crate::model::{DegreeOfFreedom, LoadKind, NormalLaw};
 use crate::system::constraint;
@@ -176,7 +176,7 @@ impl<S: Scalar> Stop<'_, S> {
         let x = self.coordinate.value(at);
         let speed = match self.coordinate {
             Coordinate::Angle | Coordinate::Slide => self.coordinate.rate(at).re().abs(),
-            Coordinate::Distance => contact::speed(at),
+            Coordinate::Distance => speed_seen(at),
         };
         for (limit, side) in self.limits.iter().zip(SIDES) {
             if let Some(limit) = limit {
