@@ -30,7 +30,10 @@ fn ranks_of(output: &str, count: usize) -> Vec<u32> {
     }
 }
 
-/// Kills a rank at twenty moments spread over the run. All end within seconds, and a run over another number of ranks
+/// Moments at which a rank is killed; more by the variable `FLEXBODY_KILLS`.
+const KILLS: u32 = 6;
+
+/// Kills a rank at moments spread over the run. All end within seconds, and a run over another number of ranks
 /// goes on to the same optimum without repeating what the logs have.
 #[test]
 fn a_killed_rank_ends_all_and_the_run_resumes() {
@@ -49,7 +52,9 @@ fn a_killed_rank_ends_all_and_the_run_resumes() {
     let duration = begun.elapsed();
     let expected = optimum(&at.path().join("whole"));
     let mut in_the_midst = 0;
-    for k in 0..20 {
+    let kills = std::env::var("FLEXBODY_KILLS").ok();
+    let kills = kills.and_then(|n| n.parse().ok()).unwrap_or(KILLS);
+    for k in 0..kills {
         let output = format!("killed_{k}");
         let words = [&arguments[..], &["--output", &output]].concat();
         let mut run = start(3, at.path(), &words);
@@ -79,7 +84,7 @@ fn a_killed_rank_ends_all_and_the_run_resumes() {
         assert_eq!(ran.code, whole.code, "kill {k}: {}", ran.err);
         assert_eq!(optimum(&directory), expected, "kill {k}");
     }
-    assert!(in_the_midst > 10, "{in_the_midst}");
+    assert!(2 * in_the_midst > kills, "{in_the_midst} of {kills}");
 }
 
 fn files_if_any(directory: &std::path::Path) -> impl Iterator<Item = String> {
