@@ -489,6 +489,6 @@ fn a_start_on_the_axis_of_a_capsule_is_told() {
     });
     let text = serde_json::to_string_pretty(&file).expect("text");
     let faults = flexbody_problem::Problem::parse(&text, "ball.json", &[]);
-    let faults = faults.err().expect("a fault").to_string();
+    let faults = faults.expect_err("a fault").to_string();
     assert!(faults.contains("ends at the same place"), "{faults}");
 }
