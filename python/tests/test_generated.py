@@ -86,7 +86,7 @@ def build(document: dict[str, Any]) -> Machine:
     keys = ("description", "gravity", "input_tolerance", "analysis", "start")
     top = {key: document[key] for key in keys if key in document}
     machine = Machine(document["name"], **top)
-    collections = {"joints": parts.joints, "loads": parts.loads}
+    collections = {"joints": parts.joints, "loads": parts.loads, "couplings": parts.couplings}
     for key, value in document.items():
         if key in ("version", "name", "$schema", *top):
             continue
