@@ -1,7 +1,10 @@
 //! Runs of the program in scratch directories, and the files that they write.
 
+#[path = "../reference/directory.rs"]
+mod directory;
+
+pub use directory::files;
 use serde_json::Value;
-use std::collections::BTreeMap;
 use std::fs::File;
 use std::path::Path;
 use std::process::{Child, Command, Stdio};
@@ -42,23 +45,6 @@ pub fn expect(code: i32, directory: &Path, arguments: &[&str]) -> Ran {
     let ran = optimize(directory, arguments);
     assert_eq!(ran.code, code, "{arguments:?}\n{}{}", ran.out, ran.err);
     ran
-}
-
-/// All files below a directory: relative path and content.
-pub fn files(directory: &Path) -> BTreeMap<String, Vec<u8>> {
-    let mut all = BTreeMap::new();
-    for entry in std::fs::read_dir(directory).expect("a directory") {
-        let entry = entry.expect("an entry");
-        let (path, name) = (entry.path(), entry.file_name());
-        let name = name.to_string_lossy().into_owned();
-        if path.is_dir() {
-            let inner = files(&path).into_iter();
-            all.extend(inner.map(|(inside, bytes)| (format!("{name}/{inside}"), bytes)));
-        } else {
-            all.insert(name, std::fs::read(&path).expect("a file"));
-        }
-    }
-    all
 }
 
 pub fn names(directory: &Path) -> Vec<String> {

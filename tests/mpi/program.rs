@@ -1,7 +1,10 @@
 //! Runs of `optimize-mpi` under `mpirun`, and the problems of the tests.
 
+#[path = "../reference/directory.rs"]
+mod directory;
+
+pub use directory::files;
 use serde_json::{Value, json};
-use std::collections::BTreeMap;
 use std::path::Path;
 use std::process::{Child, Command, Stdio};
 use std::time::{Duration, Instant};
@@ -96,22 +99,6 @@ pub fn no_orphans(output: &str) {
         );
         std::thread::sleep(Duration::from_millis(20));
     }
-}
-
-/// All files below a directory.
-pub fn files(directory: &Path) -> BTreeMap<String, Vec<u8>> {
-    let mut all = BTreeMap::new();
-    for entry in std::fs::read_dir(directory).expect("a directory").flatten() {
-        let (path, name) = (entry.path(), entry.file_name());
-        let name = name.to_string_lossy().into_owned();
-        if path.is_dir() {
-            let inner = files(&path).into_iter();
-            all.extend(inner.map(|(inside, bytes)| (format!("{name}/{inside}"), bytes)));
-        } else {
-            all.insert(name, std::fs::read(&path).expect("a file"));
-        }
-    }
-    all
 }
 
 /// Asserts that two directories have the same files, byte for byte.
