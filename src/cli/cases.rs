@@ -75,17 +75,18 @@ pub(super) fn simulate(
 
 /// Each case, then the functions over cases.
 fn summary(problem: &Problem, all: &InCases<Simulated>) -> Result<String, Failure> {
-    let mut text = String::new();
-    for (case, at) in all.each() {
-        text += &match at {
+    let of_case = |case: &Case, at: &Simulated| -> Result<String, Failure> {
+        Ok(match at {
             Simulated::Motion(at) => {
                 let told = modes(case, at)?;
                 motion::summary(&case.problem, at, told.as_ref())
             }
             Simulated::Statics(at) => statics::summary(&case.problem, at),
             Simulated::Cases(_) => String::new(),
-        };
-    }
+        })
+    };
+    let each: Vec<String> = all.side_by_side(of_case)?;
+    let mut text = each.concat();
     let names = || {
         problem
             .function_names
@@ -114,8 +115,7 @@ fn modes(case: &Case, at: &Simulation) -> Result<Option<ToldModes>, Failure> {
 
 /// Each case as by itself, and all functions.
 fn as_json(job: &Job, problem: &Problem, all: &InCases<Simulated>) -> Result<Value, Failure> {
-    let mut cases = Map::new();
-    for (case, at) in all.each() {
+    let of_case = |case: &Case, at: &Simulated| -> Result<(String, Value), Failure> {
         let own = match at {
             Simulated::Motion(at) => {
                 let told = modes(case, at)?;
@@ -124,8 +124,9 @@ fn as_json(job: &Job, problem: &Problem, all: &InCases<Simulated>) -> Result<Val
             Simulated::Statics(at) => statics::as_json(&case.problem, at, None),
             Simulated::Cases(_) => Value::Null,
         };
-        cases.insert(case.name.clone(), own);
-    }
+        Ok((case.name.clone(), own))
+    };
+    let cases: Map<String, Value> = all.side_by_side(of_case)?.into_iter().collect();
     let which: Vec<usize> = (0..problem.function_names.len()).collect();
     let errors = match job.error {
         true => Some(

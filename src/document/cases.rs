@@ -60,7 +60,7 @@ pub enum AllCases {
 #[derive(Clone, Debug, Deserialize, JsonSchema)]
 #[serde(rename_all = "snake_case", deny_unknown_fields)]
 pub enum CaseCombination {
-    /// Their sum Σ w_c f_c.
+    /// Their sum Σ w_c f_c. A weight may be negative: 1 and −1 give a difference of two cases.
     Sum,
     /// Their mean m = Σ w_c f_c / Σ w_c.
     Mean,

@@ -20,7 +20,8 @@ use crate::driver::ends::Ends;
 use crate::functions::snapshot::Snapshot;
 use crate::math::Vec3;
 use crate::plots::{
-    BodyMotion, EnergyRun, History as Curves, Motion, convergence, energy, fit, histories, motion,
+    BodyMotion, EnergyRun, History as Curves, Lapse, Motion, convergence, energy, fit, histories,
+    motion,
 };
 use crate::problem::{Drawing, Problem, Trace};
 use crate::report::History;
@@ -250,6 +251,7 @@ fn lapse(
     let traces = thrown.iter().chain(others).map(trace).collect();
     Motion {
         title: title.to_string(),
+        lapse: Lapse::Time,
         bodies,
         connectors: connectors((model, run), drawing, &instants),
         traces,

@@ -9,7 +9,7 @@ use crate::driver::Simulation;
 use crate::driver::modes::{ToldModes, told};
 use crate::functions::snapshot::Snapshot;
 use crate::math::Complex64;
-use crate::plots::{BodyMotion, CampbellPoint, Motion, Sense, campbell, motion};
+use crate::plots::{BodyMotion, CampbellPoint, Lapse, Motion, Sense, campbell, motion};
 use crate::problem::{Drawing, Problem};
 use crate::report::number::significant;
 use crate::system::bodies::advance;
@@ -22,6 +22,8 @@ const MOST_NUMBERS: usize = 10_000;
 /// The largest displacement in a picture, as a part of the size of the machine; and the largest rotation \[rad\].
 const DISPLACED: f64 = 0.12;
 const TURNED: f64 = 0.4;
+/// A mode that moves by less than this part of the size of the machine in a picture is across it.
+const SEEN: f64 = 1e-3;
 /// A part of a mode that is small enough for its direction.
 const SMALL: f64 = 1e-6;
 
@@ -177,9 +179,14 @@ fn shape(
         Some((Whirl::Backward, _)) => ", backward",
         None => "",
     };
+    let across = match part * seen_rate < SEEN * size {
+        true => ", across the picture",
+        false => "",
+    };
     let frequency = significant(mode.frequency, 4);
     Some(Motion {
-        title: format!("mode {}: {frequency} Hz{whirl}", number + 1),
+        title: format!("mode {}: {frequency} Hz{whirl}{across}", number + 1),
+        lapse: Lapse::Mode,
         bodies,
         connectors: Vec::new(),
         traces: Vec::new(),

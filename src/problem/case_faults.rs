@@ -32,6 +32,7 @@ impl Stated {
                 let expected = "a name for a directory, of letters, digits, spaces, dots, - and _";
                 found.push(Finding::new(&pointer, format!("\"{name}\""), expected).of_key());
             }
+            found.extend(self.ambiguous(&pointer, name));
             let sets = join(&pointer, "set");
             found.extend(
                 case.set
@@ -56,6 +57,25 @@ impl Stated {
         }));
         found.extend(self.wrong_references(document));
         found
+    }
+
+    /// Why a name of a case may stand for something else: the directory of another case, or a case of another name.
+    fn ambiguous(&self, pointer: &str, name: &str) -> Option<Finding> {
+        let own = self.cases.get_index_of(name)?;
+        let mut before = self.cases.keys().take(own);
+        let same = before.find(|other| other.to_lowercase() == name.to_lowercase());
+        let (said, expected) = match same {
+            Some(other) => (
+                format!("\"{name}\" after \"{other}\""),
+                "names that differ by more than letter case, as each is a directory",
+            ),
+            None if name.contains(" in ") => (
+                format!("\"{name}\""),
+                "a name without \" in \", which stands between function and case",
+            ),
+            None => return None,
+        };
+        Some(Finding::new(pointer, said, expected).of_key())
     }
 
     fn wrong_references(&self, document: &Document) -> Vec<Finding> {

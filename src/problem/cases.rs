@@ -17,6 +17,7 @@ use super::{Constraint, Objective, Problem, Sense};
 use crate::schema::cases::Case as WrittenCase;
 use crate::schema::functions::Function;
 use crate::schema::{self, Analysis};
+use rayon::prelude::*;
 use serde_json::{Value, json};
 use std::collections::HashMap;
 use std::path::Path;
@@ -121,18 +122,19 @@ fn complete(
     source: &Source,
     (file, overrides): (&str, &[Override]),
 ) -> Result<Problem, Faults> {
-    let mut list = Vec::new();
-    for (name, case) in stated.cases() {
+    let stated_cases: Vec<_> = stated.cases().collect();
+    let read = |&(name, case): &(&String, &WrittenCase)| {
         let found = of_case(&base, &stated, (name, case), source, (file, overrides));
         let problem = found.map_err(|faults| {
             let sets: Vec<String> = case.set.keys().cloned().collect();
             faults.in_case(name, &sets, (file, source))
         })?;
-        list.push(Case {
-            name: name.clone(),
-            problem,
-        });
-    }
+        let name = name.clone();
+        Ok(Case { name, problem })
+    };
+    // All are read, so that the first fault in the order of the file is told.
+    let list: Vec<Result<Case, Faults>> = stated_cases.par_iter().map(read).collect();
+    let mut list: Vec<Case> = list.into_iter().collect::<Result<_, _>>()?;
     let mut places = Vec::new();
     let mut written = base.written.clone();
     written.functions.clear();

@@ -3,6 +3,7 @@
 use super::holds::{self, nodes_of};
 use super::parts;
 use super::reduced;
+use super::spread_loads::unit_forces;
 use super::statics::mesh::{Part, part};
 use super::statics::properties::{slots, thickness};
 use crate::math::{Scalar, Vec3};
@@ -178,7 +179,8 @@ pub fn prepare(document: &Document, elements: &Elements) -> Result<Arc<Prepared>
         let other = elements.design.as_ref();
         other.map_or(quantity.value, |x| quantity.get(x))
     });
-    reduced::reduce(&elements.basis, &of_file, &mut made)?;
+    let loads = |made: &Prepared| unit_forces(document, elements, made);
+    reduced::reduce(&elements.basis, &of_file, loads, &mut made)?;
     Ok(elements.prepared.get_or_init(|| Arc::new(made)).clone())
 }
 

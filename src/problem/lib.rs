@@ -58,6 +58,7 @@ mod reduced;
 mod scene;
 mod section;
 mod source;
+mod spread_loads;
 mod start_rates;
 mod starting_angles;
 mod starts;

@@ -2,6 +2,7 @@
 
 use super::elements::prepared;
 use super::placement::{Assembly, GROUND};
+use super::spread_loads::dead_shares;
 use crate::math::scalar::unit;
 use crate::math::{Scalar, Vec3};
 use crate::model::{
@@ -16,9 +17,6 @@ use crate::schema::loads::{
     Axes as WrittenAxes, BushingEntries, Contact as WrittenContact, Interpolation,
     Load as WrittenLoad, Motion, Stop, Surface as WrittenSurface, TimeFunction as Written,
 };
-use crate::structures::loads::edge_shares;
-use crate::structures::mesh::Edge;
-use std::collections::BTreeMap;
 use std::sync::Arc;
 
 /// The loads of a checked document, in its order.
@@ -151,22 +149,30 @@ fn kind<S: Scalar>(
             distributed(&load.body, spread, load.pressure.parts())
         }
         WrittenLoad::Area(load) => {
-            let shares = area_shares(&elements(document, &load.body), &load.faces);
-            let spread = dead(assembly, shares, (&load.direction, load.axes));
+            let spread = dead(
+                document,
+                assembly,
+                written,
+                (&load.body, &load.direction, load.axes),
+            );
             distributed(&load.body, spread, load.magnitude.parts())
         }
         WrittenLoad::Edge(load) => {
-            let own = elements(document, &load.body);
-            let shares = edge_shares(&own.mesh.nodes, &own.sets.edge_sets[&load.edges]);
-            let spread = dead(assembly, shares, (&load.direction, load.axes));
+            let spread = dead(
+                document,
+                assembly,
+                written,
+                (&load.body, &load.direction, load.axes),
+            );
             distributed(&load.body, spread, load.magnitude.parts())
         }
         WrittenLoad::Line(load) => {
-            let own = elements(document, &load.body);
-            let beams = own.sets.beam_sets[&load.beams].iter();
-            let beams: Vec<Edge> = beams.map(|&beam| own.sets.beams[beam].into()).collect();
-            let shares = edge_shares(&own.mesh.nodes, &beams);
-            let spread = dead(assembly, shares, (&load.direction, load.axes));
+            let spread = dead(
+                document,
+                assembly,
+                written,
+                (&load.body, &load.direction, load.axes),
+            );
             distributed(&load.body, spread, load.magnitude.parts())
         }
     }
@@ -279,24 +285,15 @@ fn elements(document: &Document, body: &str) -> Arc<Prepared> {
     prepared(document, own)
 }
 
-/// ∫ N_a dA of the nodes of a set of shells \[m²\].
-fn area_shares(own: &Prepared, faces: &str) -> BTreeMap<usize, f64> {
-    let mut shares = BTreeMap::new();
-    for &shell in &own.sets.face_sets[faces] {
-        let element = &own.mesh.elements[shell];
-        for (node, row) in element.nodes.iter().zip(&element.shares) {
-            *shares.entry(*node).or_default() += row.iter().sum::<f64>();
-        }
-    }
-    shares
-}
-
 /// A load in a fixed direction.
 fn dead<S: Scalar>(
+    document: &Document,
     assembly: &Assembly<S>,
-    shares: BTreeMap<usize, f64>,
-    (direction, own): (&Vector, WrittenAxes),
+    written: &WrittenLoad,
+    (body, direction, own): (&str, &Vector, WrittenAxes),
 ) -> Spread<S> {
+    let shares = dead_shares(&elements(document, body), written);
+    let shares = shares.expect("sets of loads are checked when a problem is read");
     Spread::Dead {
         shares: shares.into_iter().collect(),
         direction: unit(assembly.ground(direction)),

@@ -112,6 +112,14 @@ impl<'a> Reader<'a> {
         }
     }
 
+    /// Refuses the words of a line from number `most` on.
+    fn at_most(&self, all: &[Word], most: usize) -> Result<(), TextFault> {
+        all.get(most).map_or(Ok(()), |more| {
+            let expected = format!("the end of the line after {most} numbers");
+            Err(TextFault::new(bytes(more), quoted(more.1), expected))
+        })
+    }
+
     fn file(&mut self) -> Result<(), TextFault> {
         let first = self.line().map(|(_, line)| line.trim());
         if first != Some("$MeshFormat") {
@@ -255,6 +263,7 @@ impl<'a> Reader<'a> {
     fn nodes_2(&mut self) -> Result<(), TextFault> {
         for _ in 0..self.count("the number of nodes")? {
             let all = self.words(4, "a node: its number, x, y, z")?;
+            self.at_most(&all, 4)?;
             self.node(&all[0], &all[1..])?;
         }
         Ok(())
@@ -268,12 +277,18 @@ impl<'a> Reader<'a> {
         for _ in 0..whole(&head[0], 0, "the number of blocks")? {
             let expected = "dimension, entity, parametric or not, and number of nodes of a block";
             let block = self.words(4, expected)?;
+            // Parameters on its curve or surface follow the place of a node.
+            let most = match block[2].1 {
+                "0" => 3,
+                _ => 6,
+            };
             let mut numbers = Vec::new();
             for _ in 0..whole(&block[3], 0, "the number of nodes of a block")? {
                 numbers.push(self.words(1, "the number of a node")?[0]);
             }
             for number in &numbers {
                 let place = self.words(3, "x, y, z of a node")?;
+                self.at_most(&place, most)?;
                 self.node(number, &place)?;
             }
         }

@@ -1,18 +1,21 @@
 //! What a run says of its input: what is left out, used though it does not fit, or stiffer than it looks.
 
-use super::{Problem, elements, holds, mass};
+use super::{Problem, beam, elements, holds, mass};
 use crate::model::rigid_body::{ROUNDING, excess_of_inertia};
 use crate::schema::Document;
+use crate::schema::flexible::Strain;
+use crate::structures::modal::BeamModes;
 use crate::system::left_out;
 
 impl Problem {
-    /// Redundant rows of joints, inertias of no solid within the tolerance of the input, surfaces seen from inside, and
-    /// edges that axes alone make rigid.
+    /// Redundant rows of joints, inertias of no solid within the tolerance of the input, surfaces seen from inside, edges
+    /// that axes alone make rigid, and beams that lock.
     pub fn notes_of_input(&self) -> Vec<String> {
         let mut notes = left_out::told(&self.redundant);
         notes.extend(self.inertias());
         notes.extend(inwards(&self.written));
         notes.extend(edges(&self.written));
+        notes.extend(locked_beams(&self.written));
         notes
     }
 
@@ -41,6 +44,23 @@ fn edges(document: &Document) -> impl Iterator<Item = String> {
             "body \"{name}\": its axes are clamped at \"{set}\", where no point holds it: the nodes there keep their places \
              among each other, and the body is stiffer than in \"chord\" axes"
         ))
+    })
+}
+
+/// Beams with too few functions of stretch to bend without it.
+fn locked_beams(document: &Document) -> impl Iterator<Item = String> {
+    document.bodies.iter().filter_map(|(name, body)| {
+        let own = body.beam.as_ref().filter(|own| own.strain == Strain::VonKarman)?;
+        let modes = beam::modes(own);
+        let needed = BeamModes::companions(modes.bending, modes.torsion);
+        let bends = modes.bending != [0, 0] && modes.stretch < needed;
+        bends.then(|| {
+            format!(
+                "body \"{name}\": \"stretch\": {} with von Karman's strains, where this bending needs {needed}: it becomes too \
+                 stiff where it bends by more than its thickness (membrane locking); without the key it has as many as it needs",
+                modes.stretch
+            )
+        })
     })
 }
 

@@ -101,20 +101,21 @@ pub(super) fn request(keys: &ReducedKeys, mesh: &ElementMesh) -> Request {
     }
 }
 
-/// Gives prepared shells the basis that their file requests; `shells` are those of the design in
-/// the file.
+/// Gives prepared shells the basis that their file requests; `of_file` are those of the design in
+/// the file, `loads` the forces of loads that are spread over them.
 ///
 /// # Errors
 /// [`PencilFailure`]: the stiffness is singular with the axes held.
 pub(super) fn reduce(
     basis: &ElementBasis,
     of_file: &FiniteElements<f64>,
+    loads: impl FnOnce(&Prepared) -> Vec<Vec<f64>>,
     prepared: &mut Prepared,
 ) -> Result<(), PencilFailure> {
     let basis = match basis {
         ElementBasis::Full => return Ok(()),
         ElementBasis::Rigid => None,
-        ElementBasis::Reduced(keys) => Some(make(keys, of_file, prepared)?),
+        ElementBasis::Reduced(keys) => Some(make(keys, of_file, &loads(prepared), prepared)?),
     };
     let (mesh, slots) = (&prepared.mesh, &prepared.slots);
     let (vectors, bending) = basis.as_ref().map_or_else(Default::default, |basis| {
@@ -133,6 +134,7 @@ pub(super) fn reduce(
 fn make(
     keys: &ReducedKeys,
     of_file: &FiniteElements<f64>,
+    loads: &[Vec<f64>],
     prepared: &Prepared,
 ) -> Result<ReducedBasis, PencilFailure> {
     let points = prepared.points.iter();
@@ -145,7 +147,8 @@ fn make(
     let ties: Vec<Tie> = ties
         .map(|(name, nodes)| tie(nodes, &prepared.points[name]))
         .collect();
-    reduced_basis(of_file, &points, &ties, &request(keys, &prepared.mesh))
+    let request = request(keys, &prepared.mesh);
+    reduced_basis(of_file, &points, &ties, loads, &request)
 }
 
 /// The rows that vanish where the nodes of an edge follow its average.

@@ -159,7 +159,7 @@ fn bending_alone_locks() {
             deflection: 0.0,
             tolerance: 1e-3,
         };
-        let basis = reduced_basis(&shells, &[], &[], &request).expect("a basis");
+        let basis = reduced_basis(&shells, &[], &[], &[], &request).expect("a basis");
         assert_eq!(basis.companions > 0, companions);
         let [bending, stretch] = bent(&shells, &basis);
         stretch / bending

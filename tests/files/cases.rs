@@ -461,7 +461,10 @@ fn what_cases_cannot_do_is_told_by_place() {
         faults(&file)
     };
     let over = |own: Value| change(&|file| file["functions"]["worst"]["over_cases"] = own.clone());
+    let named = |name: &str| change(&|file| file["cases"][name] = file["cases"]["empty"].clone());
     let all: Vec<(Told, &str, &str)> = vec![
+        (named("Empty"), "/cases/Empty", "\"Empty\" after \"empty\""),
+        (named("half in a"), "/cases/half in a", "\"half in a\""),
         (
             change(&|file| file["cases"]["empty"]["set"]["/bodies/payload/mas"] = json!(1)),
             "/cases/empty/set/~1bodies~1payload~1mas",

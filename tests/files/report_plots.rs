@@ -1,8 +1,8 @@
 //! Figures show the data inside their canvas, for any data.
 
 use flexbody_figures::plots::{
-    Barrier, BodyMotion, Connector, ConnectorKind, EnergyRun, Flight, Motion, Scenery, convergence,
-    energy, motion,
+    Barrier, BodyMotion, Connector, ConnectorKind, EnergyRun, Flight, Lapse, Motion, Scenery,
+    convergence, energy, motion,
 };
 use flexbody_report::history::Column;
 use flexbody_report::{History, HistoryRow};
@@ -185,6 +185,7 @@ fn thrower(title: &str, speed: f64) -> Motion {
     };
     Motion {
         title: title.into(),
+        lapse: Lapse::Time,
         bodies: vec![
             BodyMotion {
                 name: "arm".into(),
@@ -326,6 +327,7 @@ fn flat_steep_and_broken_motions_stay_inside() {
     broken.traces[0][3] = [f64::INFINITY, 0.0];
     broken.flight.as_mut().expect("is valid").gravity = 0.0;
     let point = Motion {
+        lapse: Lapse::Time,
         bodies: vec![BodyMotion {
             name: "a point".into(),
             patches: Vec::new(),

@@ -3,7 +3,7 @@
 
 use super::damped_modes::pairs;
 use super::machines_at_rest::{fault, rod};
-use crate::reference::documents::{problem as parsed, values};
+use crate::reference::documents::{problem as parsed, read, values};
 use crate::reference::gradients::{gradients_are_exact, gradients_are_slopes};
 use flexbody_driver::check;
 use flexbody_mechanics::system::equilibrium::Whirl;
@@ -428,6 +428,24 @@ fn what_cannot_turn_is_told() {
         },
         &["speeds of a machine that does not turn"],
     );
+}
+
+/// The stiffness of shafts in stretch leaves no round-off in critical speeds and their derivatives.
+#[test]
+fn critical_speeds_of_stiff_shafts_are_exact() {
+    let mut file = read("problems/rotor.json");
+    file["functions"] = json!({
+        "first": {"critical_speed": {"number": 1}},
+        "second": {"critical_speed": {"number": 2}}
+    });
+    file["objective"] = json!({"minimise": "first"});
+    file["constraints"] = json!({});
+    gradients_are_exact(&parsed(&file), &json!("rotor"));
+    let at_start = values(&file);
+    let radius = &mut file["bodies"]["right shaft"]["beam"]["section"]["tube"]["radius"];
+    let above = radius.as_f64().expect("a number").next_up();
+    *radius = json!(above);
+    assert_near(&values(&file), &at_start, 1e-14);
 }
 
 /// A rigid rotor on a ball joint, held by springs in rotational symmetry, has the critical speed √(k / (I_t − I_p)) about any

@@ -41,11 +41,22 @@ pub struct Flight {
     pub gravity: f64,
 }
 
+/// What the outlines of a body show.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Lapse {
+    /// Instants of a motion.
+    Time,
+    /// Rest, and a mode of vibration.
+    Mode,
+}
+
 /// One design in motion.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Motion {
     /// What it is, such as `optimal design`.
     pub title: String,
+    /// What the outlines of its bodies show.
+    pub lapse: Lapse,
     /// Bodies in the order of the problem file; the same for all designs.
     pub bodies: Vec<BodyMotion>,
     /// Joints, rods, springs and arms.
@@ -66,6 +77,9 @@ pub struct Coloured {
     /// The kinds of stress.
     pub notes: Vec<String>,
 }
+
+/// The least end of a scale of stress \[Pa\]: below it are the round-off of stiff bodies that nothing loads.
+const LEAST_STRESS: f64 = 1e-3;
 
 /// Points of a drawn flight.
 const FLIGHT_POINTS: usize = 200;
@@ -103,7 +117,10 @@ pub(super) fn stress_range(designs: &[Motion]) -> Option<[f64; 2]> {
     values.peek()?;
     let coloured = designs.iter().filter_map(|design| design.coloured.as_ref());
     let (low, high) = range(values.chain(coloured.map(|own| own.largest)));
-    Some([low, high])
+    Some(match high < LEAST_STRESS {
+        true => [0.0, LEAST_STRESS],
+        false => [low, high],
+    })
 }
 
 pub(super) fn lapse_legend(designs: &[Motion], width: f64, values: Option<[f64; 2]>) -> Legend {
@@ -133,7 +150,11 @@ pub(super) fn lapse_legend(designs: &[Motion], width: f64, values: Option<[f64; 
     }
     let moves = designs[0].bodies.iter().any(|body| body.outlines.len() > 1);
     if moves {
-        entries.push((Key::Note, "(pale: early, full: late)".to_owned()));
+        let note = match designs[0].lapse {
+            Lapse::Time => "(pale: early, full: late)",
+            Lapse::Mode => "(pale: at rest, full: deflected)",
+        };
+        entries.push((Key::Note, note.to_owned()));
     }
     Legend::new(entries, width)
 }

@@ -26,7 +26,7 @@ pub use convergence::convergence;
 pub use energy::{EnergyRun, energy};
 pub use fit::{FittedCurve, fit};
 pub use histories::{History, Limit, histories};
-pub use lapse::{BodyMotion, Coloured, Flight, Motion, Patch};
+pub use lapse::{BodyMotion, Coloured, Flight, Lapse, Motion, Patch};
 pub use mesh_precision::mesh_precision;
 pub use motion::{Barrier, Scenery, motion};
 pub use structure::{Camera, StructureView, structure};

@@ -96,8 +96,12 @@ fn of_basis(basis: &ReducedBasis) -> String {
             format!("{count} fixed-interface modes up to {last:.4e} Hz")
         }
     };
+    let loaded = match basis.loaded {
+        0 => String::new(),
+        count => format!(" {count} vectors of spread loads,"),
+    };
     format!(
-        " in a reduced basis of the design in the file ({} boundary modes, {fixed}, {} vectors of static \
+        " in a reduced basis of the design in the file ({} boundary modes, {fixed},{loaded} {} vectors of static \
          solutions, {} companions; {} vectors bend); frequencies with its axes held {} Hz",
         basis.boundary,
         basis.statics,

@@ -35,8 +35,12 @@ fn faults_are_told_by_line() {
     );
     assert!(good.contains(&middle));
     let shifted = good.replace(&middle, &middle.replace("0.15", "0.084"));
-    let cases: [(String, &[&str]); 15] = [
+    let cases: [(String, &[&str]); 16] = [
         (String::new(), &["an empty file", "$MeshFormat"]),
+        (
+            good.replace(&middle, &middle.replace(" 0\n", " 0 0.5\n")),
+            &["\"0.5\"", "the end of the line after 4 numbers"],
+        ),
         (
             good.replace("2.2 0 8", "4.0 0 8"),
             &["MSH version \"4.0\"", "a.msh:2:1", "-format msh41"],

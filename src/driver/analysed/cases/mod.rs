@@ -63,6 +63,23 @@ impl<T> InCases<T> {
         all.filter_map(|(case, at)| Some((case, at.as_ref()?)))
     }
 
+    /// What `of` makes of each case that is analysed, on all cores.
+    ///
+    /// # Errors
+    /// The first failure of `of`.
+    pub fn side_by_side<R: Send, E: Send>(
+        &self,
+        of: impl Fn(&Case, &T) -> Result<R, E> + Sync,
+    ) -> Result<Vec<R>, E>
+    where
+        T: Sync,
+    {
+        let each: Vec<(&Case, &T)> = self.each().collect();
+        each.into_par_iter()
+            .map(|(case, at)| of(case, at))
+            .collect()
+    }
+
     /// A number of a function that an expression does not give; NaN if its case is not analysed.
     fn at_place(&self, k: usize, of: &impl Fn(&T, usize) -> f64) -> f64 {
         self.place(k).map_or(f64::NAN, |(_, at, own)| of(at, own))

@@ -38,7 +38,7 @@ const KEPT: usize = 8;
 /// Relative change of a speed by which it is found.
 const CLOSE: f64 = 1e-13;
 /// The same where changes do not become smaller.
-const STAGNANT: f64 = 1e-9;
+const STAGNANT: f64 = 1e-11;
 /// A rate counts as i Ω if its real part is below this part of it.
 const IMAGINARY: f64 = 1e-7;
 /// Part of the derivatives of a pair by which their matrix may differ from a multiple of the unit matrix.
@@ -171,10 +171,17 @@ fn at_equilibrium(
         for (k, m) in matrices.stiffness.values.iter_mut().zip(inertia) {
             *k += least * m;
         }
-        let [forward, backward] = [1.0, -1.0].map(|speed| of(speed).stiffness.values);
+        // A speed of the size of the sought one: that of 1 rad/s would leave N with the round-off of K.
+        let scale = match speed > 0.0 {
+            true => speed,
+            false => found.rate.sqrt(),
+        };
+        let [forward, backward] = [scale, -scale].map(|speed| of(speed).stiffness.values);
         let parts = forward.iter().zip(&backward);
         let turned = parts.zip(&still);
-        let turned: Vec<f64> = turned.map(|((a, b), k)| k - 0.5 * (a + b)).collect();
+        let turned: Vec<f64> = turned
+            .map(|((a, b), k)| (k - 0.5 * (a + b)) / (scale * scale))
+            .collect();
         let free = (FREE * found.rate).max(ABOVE * least);
         let allowed = At::rest(layout, solver.model, found, None).freedom();
         let rates = (found.rate, free);

@@ -9,7 +9,7 @@ use super::{LoadCotangent, LoadEntries};
 use crate::linalg::Emit;
 use crate::math::{Mat3, Scalar, Vec3, scalar::lift3};
 use crate::model::distributed::{DistributedLoad, Spread};
-use crate::model::finite::FiniteElements;
+use crate::model::finite::{ElementMesh, FiniteElements};
 use crate::model::flexible::FlexibleBody;
 use crate::model::reduced::NodalBasis;
 use crate::model::{Axes, LoadKind};
@@ -95,6 +95,43 @@ fn for_each<S: Scalar>(here: &InMotion<S>, mut visit: impl FnMut(usize, &Acting<
     }
 }
 
+/// A shell under a pressure of one, whose nodes are at `x`.
+fn pressed<S: Scalar>(nodes: &ShellNodes, x: Vec<Vec3<S>>) -> Patch<'_, S> {
+    let tables = ShellKind::of(nodes).tables();
+    let mut unit = vec![Vec3::zeros(); nodes.len()];
+    let mut tangents = [[Vec3::zeros(); 2]; GAUSS_POINTS];
+    for (g, (basis, own)) in tables.gauss.iter().zip(&mut tangents).enumerate() {
+        for (along, by) in own.iter_mut().zip(&basis.by) {
+            for (x, &slope) in x.iter().zip(by) {
+                *along += x * S::from(slope);
+            }
+        }
+        let normal = own[0].cross(&own[1]) * S::from(tables.weights[g]);
+        for (unit, &n) in unit.iter_mut().zip(&basis.n) {
+            *unit += normal * S::from(n);
+        }
+    }
+    Patch {
+        nodes,
+        x,
+        unit,
+        tangents: Some((tangents, tables)),
+        share: 0.0,
+    }
+}
+
+/// ∫ N_a x,r × x,s dr ds of the nodes of undeformed shells \[m²\].
+pub fn normal_shares(mesh: &ElementMesh, shells: &[usize]) -> Vec<(usize, Vec3<f64>)> {
+    let mut all = Vec::new();
+    for &shell in shells {
+        let nodes = &mesh.elements[shell].nodes;
+        let places = nodes.iter().map(|&node| mesh.nodes[node]);
+        let unit = pressed(nodes, places.collect()).unit;
+        all.extend(nodes.iter().copied().zip(unit));
+    }
+    all
+}
+
 impl<S: Scalar> Acting<'_, S> {
     /// Component `k` of the displacement of a node.
     fn displacement(&self, node: usize, k: usize) -> S {
@@ -124,7 +161,9 @@ impl<S: Scalar> Acting<'_, S> {
         match &self.load.spread {
             Spread::Pressure { shells } => {
                 for &shell in shells.iter() {
-                    visit(&self.pressed(&self.finite.mesh.elements[shell].nodes));
+                    let nodes = &self.finite.mesh.elements[shell].nodes;
+                    let places = nodes.iter().map(|&node| self.place(node));
+                    visit(&pressed(nodes, places.collect()));
                 }
             }
             Spread::Dead {
@@ -146,31 +185,6 @@ impl<S: Scalar> Acting<'_, S> {
                     });
                 }
             }
-        }
-    }
-
-    fn pressed<'a>(&self, nodes: &'a ShellNodes) -> Patch<'a, S> {
-        let x: Vec<Vec3<S>> = nodes.iter().map(|&node| self.place(node)).collect();
-        let tables = ShellKind::of(nodes).tables();
-        let mut unit = vec![Vec3::zeros(); nodes.len()];
-        let mut tangents = [[Vec3::zeros(); 2]; GAUSS_POINTS];
-        for (g, (basis, own)) in tables.gauss.iter().zip(&mut tangents).enumerate() {
-            for (along, by) in own.iter_mut().zip(&basis.by) {
-                for (x, &slope) in x.iter().zip(by) {
-                    *along += x * S::from(slope);
-                }
-            }
-            let normal = own[0].cross(&own[1]) * S::from(tables.weights[g]);
-            for (unit, &n) in unit.iter_mut().zip(&basis.n) {
-                *unit += normal * S::from(n);
-            }
-        }
-        Patch {
-            nodes,
-            x,
-            unit,
-            tangents: Some((tangents, tables)),
-            share: 0.0,
         }
     }
 

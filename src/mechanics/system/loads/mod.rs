@@ -33,6 +33,8 @@ use parameters::give_to_parameters;
 use pull::Pulled;
 use std::ops::Range;
 
+pub use distributed::normal_shares;
+
 /// Both bodies of a load, with its points or frames.
 pub(super) struct Acting<'a, S> {
     bodies: [Option<usize>; 2],

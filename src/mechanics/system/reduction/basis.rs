@@ -47,6 +47,8 @@ pub struct ReducedBasis {
     pub bending: Vec<usize>,
     /// Boundary modes.
     pub boundary: usize,
+    /// Vectors from solutions under spread loads.
+    pub loaded: usize,
     /// Frequencies with the held points fixed \[Hz\].
     pub fixed: Vec<f64>,
     /// Companions.
@@ -155,7 +157,8 @@ fn fixed_modes(
     }
 }
 
-/// A reduced basis of shells that are held at points, and of which some edges are rigid.
+/// A reduced basis of shells that are held at points, of which some edges are rigid, under loads with these forces on the
+/// unknowns of the nodes.
 ///
 /// # Errors
 /// [`PencilFailure`]: the stiffness is singular with the axes held.
@@ -163,6 +166,7 @@ pub fn reduced_basis(
     shells: &FiniteElements<f64>,
     points: &[&PointMotion],
     ties: &[Tie],
+    loads: &[Vec<f64>],
     request: &Request,
 ) -> Result<ReducedBasis, PencilFailure> {
     let mut matrices = Matrices::new(shells, ties)?;
@@ -172,6 +176,11 @@ pub fn reduced_basis(
     let mut spaces = Spaces::of(shells);
     for x in boundary.iter().chain(&fixed) {
         spaces.add(matrices, x);
+    }
+    let held = spaces.count();
+    for force in loads {
+        let x = matrices.solve(force);
+        spaces.add(matrices, &x);
     }
     let first = spaces.count();
     if request.deflection > 0.0 {
@@ -198,6 +207,7 @@ pub fn reduced_basis(
         vectors,
         bending: (0..count).collect(),
         boundary: boundary.len(),
+        loaded: first - held,
         fixed: frequencies,
         statics: second - first,
         companions: third - second,

@@ -2,6 +2,7 @@
 //!
 //! - Static motions of the points that joints and loads hold, and the lowest modes with these points held (Craig
 //!   & Bampton 1968).
+//! - Static solutions under the loads that are spread over the body: modes miss the stress beside a hole or an edge.
 //! - Companions: bending stretches a shell. The membrane displacements that relieve the stretch of two bending
 //!   vectors i and j are ψ_ij = −K⁻¹ f_ij, f_ij the part of the forces that is quadratic in both (static modal
 //!   derivatives: Idelsohn & Cardona 1985). Without them bent shells lock.
