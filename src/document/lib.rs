@@ -374,7 +374,8 @@ pub struct Variable {
     /// Remark for readers of the file.
     #[serde(rename = "description")]
     pub _description: Option<String>,
-    /// JSON Pointer to the number, such as /bodies/arm/mass.
+    /// JSON Pointer to the number, such as /bodies/arm/mass; or to a list, each number of which becomes a variable
+    /// `name[0]`, `name[1]`, … with these bounds.
     pub path: Option<String>,
     /// JSON Pointers to several numbers with one value, instead of `path`.
     pub paths: Option<Vec<String>>,

@@ -10,7 +10,7 @@ use super::structure::{Number, Structure, describe};
 use crate::quantity::Quantity;
 use crate::schema::{Document, Variable as Written};
 use serde_json::Value;
-use std::collections::HashMap;
+use std::collections::{HashMap, HashSet};
 
 /// A design variable.
 #[derive(Clone, Debug, PartialEq)]
@@ -55,11 +55,18 @@ pub(super) fn variables(
         owners: HashMap::new(),
         findings: Vec::new(),
     };
-    let variables = written
-        .variables
-        .iter()
-        .map(|(name, written)| checker.variable(name, written))
-        .collect();
+    let mut variables = Vec::new();
+    for (name, written) in &written.variables {
+        checker.add(name, written, &mut variables);
+    }
+    let mut names = HashSet::new();
+    for own in &variables {
+        if !names.insert(&own.name) {
+            let found = format!("\"{}\", the name of a number of a list", own.name);
+            let finding = Finding::new(join("/variables", &own.name), found, "another name");
+            checker.findings.push(finding.of_key());
+        }
+    }
     (variables, checker.findings)
 }
 
@@ -78,12 +85,46 @@ impl<'a> Checker<'a> {
         self.findings.push(finding);
     }
 
-    fn variable(&mut self, name: &str, written: &Written) -> Variable {
+    /// Adds the variable of an entry; or, if it points at a list, one for each number: `name[0]`, `name[1]`, …
+    fn add(&mut self, name: &str, written: &Written, all: &mut Vec<Variable>) {
         let pointer = join("/variables", name);
-        let paths: Vec<(String, String)> = match (&written.path, &written.paths) {
-            (Some(path), None) => vec![(join(&pointer, "path"), path.clone())],
+        let paths = self.paths(&pointer, written);
+        let list = |path: &str| self.document.pointer(path).and_then(Value::as_array);
+        let lengths: Vec<usize> = (paths.iter())
+            .map(|(_, path)| list(path).map_or(0, Vec::len))
+            .collect();
+        let count = lengths.first().copied().unwrap_or(0);
+        if count == 0 {
+            all.push(self.variable((&pointer, name), paths, written));
+            return;
+        }
+        if let Some(k) = lengths.iter().position(|&own| own != count) {
+            let found = format!("{}, which has {} numbers", paths[k].1, lengths[k]);
+            let expected = format!("a list of {count} as {}, which it shares", paths[0].1);
+            self.fault(Finding::new(&paths[k].0, found, expected));
+            return;
+        }
+        let before = self.findings.len();
+        for k in 0..count {
+            let own = format!("{name}[{k}]");
+            let paths = paths
+                .iter()
+                .map(|(place, path)| (place.clone(), join(path, k)));
+            let paths = paths.collect();
+            all.push(self.variable((&pointer, &own), paths, written));
+            // The others have the same faults.
+            if self.findings.len() > before {
+                return;
+            }
+        }
+    }
+
+    /// The paths of an entry, and where they stand.
+    fn paths(&mut self, pointer: &str, written: &Written) -> Vec<(String, String)> {
+        match (&written.path, &written.paths) {
+            (Some(path), None) => vec![(join(pointer, "path"), path.clone())],
             (None, Some(paths)) if !paths.is_empty() => {
-                let list = join(&pointer, "paths");
+                let list = join(pointer, "paths");
                 let entries = paths.iter().enumerate();
                 entries
                     .map(|(k, path)| (join(&list, k), path.clone()))
@@ -96,10 +137,18 @@ impl<'a> Checker<'a> {
                     _ => "neither \"path\" nor \"paths\"",
                 };
                 let expected = "\"path\": one JSON Pointer, or \"paths\": a list of them";
-                self.fault(Finding::new(&pointer, found, expected).of_key());
+                self.fault(Finding::new(pointer, found, expected).of_key());
                 Vec::new()
             }
-        };
+        }
+    }
+
+    fn variable(
+        &mut self,
+        (pointer, name): (&str, &str),
+        paths: Vec<(String, String)>,
+        written: &Written,
+    ) -> Variable {
         let numbers: Vec<(&String, f64, &Number)> = paths
             .iter()
             .filter_map(|(place, path)| {
@@ -115,7 +164,7 @@ impl<'a> Checker<'a> {
             let place = paths
                 .iter()
                 .find(|(_, p)| p == *path)
-                .map_or(&pointer, |(place, _)| place);
+                .map_or(pointer, |(place, _)| place);
             if number.unit != pattern.unit {
                 let found = format!("{path} in {}", named_unit(&number.unit));
                 let expected = format!("a number in {} as {shared}", named_unit(&pattern.unit));
@@ -127,7 +176,7 @@ impl<'a> Checker<'a> {
             }
         }
         if let Some((path, start, number)) = first {
-            self.bounds(&pointer, written, path, start, number);
+            self.bounds(pointer, written, path, start, number);
         }
         let (start, unit) = first.map_or((0.0, String::new()), |(_, start, number)| {
             (start, number.unit.clone())

@@ -40,6 +40,7 @@ mod last_modes;
 mod lateral;
 mod layers;
 mod linkage_modes;
+mod list_variables;
 mod machines_at_rest;
 mod modal;
 mod modal_faults;
