@@ -1,9 +1,9 @@
 //! Events in a file that change the machine during its motion.
 
-use super::{Document, TerminalEvent};
 use super::functions::Function;
 use super::quantity::Quantity;
 use super::windows::Edge;
+use super::{Document, TerminalEvent};
 use schemars::JsonSchema;
 use serde::Deserialize;
 
@@ -69,7 +69,9 @@ impl Document {
     pub fn closed_since(&self, joint: &str, phase: usize) -> Option<usize> {
         let closes = |event: &Event| event.on.iter().any(|own| own == joint);
         let mut before = self.events.values().take(phase);
-        let last = before.rposition(closes).filter(|_| self.is_on(joint, phase));
+        let last = before
+            .rposition(closes)
+            .filter(|_| self.is_on(joint, phase));
         last.map(|event| event + 1)
     }
 

@@ -136,9 +136,10 @@ impl Function {
             Self::InducedExponential(own) => own.during.as_ref(),
             Self::MeanAbsolute(own) => own.during.as_ref(),
             Self::FatigueDamage(own) => own.during.as_ref(),
-            Self::Integral(over) | Self::Final(over) | Self::Mean(over) | Self::MeanSquare(over) => {
-                over.during()
-            }
+            Self::Integral(over)
+            | Self::Final(over)
+            | Self::Mean(over)
+            | Self::MeanSquare(over) => over.during(),
             _ => None,
         };
         match during {

@@ -13,8 +13,8 @@ use crate::integrate::{
 use crate::math::scalar::COMPLEX_STEP;
 use crate::math::soft_max::Smoothed;
 use crate::math::{Complex64, Dual, Parameters};
-use crate::model::{JointFrame, RigidBody};
 use crate::model::flexible::FlexibleBody;
+use crate::model::{JointFrame, RigidBody};
 use crate::problem::{Composition, EndCotangent, Focus, Partials, Problem};
 use std::borrow::Cow;
 use std::sync::Arc;
@@ -38,8 +38,8 @@ pub struct Evaluated {
 /// A design with an infinitesimal change of all variables, each in its scale.
 fn along(problem: &Problem, x: &[f64]) -> Vec<Complex64> {
     let scaled = problem.variables.iter().zip(x).enumerate();
-    let moved =
-        scaled.map(|(i, (variable, &x))| Complex64::new(x, COMPLEX_STEP * variable.scale * irregular(i)));
+    let moved = scaled
+        .map(|(i, (variable, &x))| Complex64::new(x, COMPLEX_STEP * variable.scale * irregular(i)));
     // The state with which a phase begins.
     let fixed = x.iter().skip(problem.variables.len());
     moved.chain(fixed.map(|&x| Complex64::from(x))).collect()

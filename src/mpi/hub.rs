@@ -302,11 +302,14 @@ impl Ranks for Hub {
         earlier: &[EvaluationRecord],
     ) -> Option<Arc<Shared>> {
         let mut own = self.state.borrow_mut();
-        let cases = problem.cases.as_ref().map_or(0, |cases| match cases.division {
-            Division::Cases => cases.list.len(),
-            // The phases of a motion follow each other.
-            Division::Events => 0,
-        });
+        let cases = problem
+            .cases
+            .as_ref()
+            .map_or(0, |cases| match cases.division {
+                Division::Cases => cases.list.len(),
+                // The phases of a motion follow each other.
+                Division::Events => 0,
+            });
         let ranks = self.post.ranks().min(cases);
         if ranks < 2 {
             return None;

@@ -87,13 +87,14 @@ impl Problem {
     pub fn case(&self, name: &str) -> Option<&Problem> {
         let cases = self.cases.as_ref()?;
         let own = cases.list.iter().find(|case| case.name == name)?;
-        Some(&own.problem)
+        Some(&own.problem).filter(|own| !own.is_phase())
     }
 
     /// Names of its cases; empty if it has none.
     pub fn case_names(&self) -> Vec<&str> {
         let cases = self.cases.iter().flat_map(|cases| &cases.list);
-        cases.map(|case| case.name.as_str()).collect()
+        let alone = cases.filter(|case| !case.problem.is_phase());
+        alone.map(|case| case.name.as_str()).collect()
     }
 
     /// Changes settings of the problem and of each case.
@@ -118,7 +119,9 @@ pub(super) fn load(path: &Path, overrides: &[Override]) -> Result<Problem, Fault
 /// Reads a problem from its text.
 pub(super) fn parse(written: &str, file: &str, overrides: &[Override]) -> Result<Problem, Faults> {
     let (document, source, findings) = read::document(written, file, overrides)?;
-    let is_divided = ["cases", "events"].iter().any(|key| document.get(key).is_some());
+    let is_divided = ["cases", "events"]
+        .iter()
+        .any(|key| document.get(key).is_some());
     let has_events = (document["events"].as_object()).is_some_and(|all| !all.is_empty());
     let of_parts = is_divided.then(|| source.clone());
     let phase = has_events.then_some(0);
@@ -268,7 +271,14 @@ fn of_case(
     stated.keep(&mut document, name);
     change(&mut document, (name, case)).map_err(located)?;
     document["name"] = Value::from(value_in_case(&base.name, name));
-    let found = read::single(document, source.clone(), Vec::new(), (file, overrides), None)?.0;
+    let found = read::single(
+        document,
+        source.clone(),
+        Vec::new(),
+        (file, overrides),
+        None,
+    )?
+    .0;
     let names = |problem: &Problem| -> Vec<String> {
         problem
             .variables

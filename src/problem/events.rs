@@ -9,6 +9,7 @@
 //! duration     Σ T_p
 //! ```
 
+use super::Problem;
 use super::cases::{Case, Cases, Division};
 use super::composed::{Composed, Composition, Term, distance_from_start};
 use super::expression::{Call, Expression, Operator};
@@ -19,7 +20,6 @@ use super::phases::quantity_of;
 use super::pointer::join;
 use super::read;
 use super::source::Source;
-use super::Problem;
 use crate::functions::{Function, Reduction, Release};
 use crate::math::soft_max::Bound;
 use crate::schema::events::When;
@@ -66,7 +66,10 @@ pub(super) fn complete(
             function_names.push(format!("{} {name}", own[f]));
         }
     }
-    let taken = base.function_names.iter().find(|name| function_names.contains(name));
+    let taken = base
+        .function_names
+        .iter()
+        .find(|name| function_names.contains(name));
     if let Some(name) = taken {
         let found = "the name of a function in a phase of the motion";
         let finding = Finding::new(join("/functions", name), found, "another name").of_key();
@@ -187,7 +190,9 @@ struct Values<'a> {
 impl Values<'_> {
     fn of(&self, function: usize, phase: usize) -> OfFunctions {
         let place = self.places.iter().position(|own| *own == (phase, function));
-        Expression::Name(Term::Function(place.expect("phases have the same functions")))
+        Expression::Name(Term::Function(
+            place.expect("phases have the same functions"),
+        ))
     }
 
     fn each(&self, function: usize) -> impl Iterator<Item = OfFunctions> {

@@ -270,9 +270,10 @@ impl Problem {
     /// event.
     pub fn end_moves(&self) -> bool {
         let simulation = self.written.simulation.as_ref();
-        self.is_phase() || simulation.is_some_and(|simulation| {
-            simulation.duration.variable.is_some() || simulation.until.is_some()
-        })
+        self.is_phase()
+            || simulation.is_some_and(|simulation| {
+                simulation.duration.variable.is_some() || simulation.until.is_some()
+            })
     }
 
     /// Name of the problem and of its results.

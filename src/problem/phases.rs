@@ -77,7 +77,10 @@ pub(super) fn begin<S: Scalar>(document: &Document, scene: &mut Scene<S>, state:
         }
     }
     for (j, (name, written)) in document.joints.iter().enumerate() {
-        match (document.is_on(name, phase), document.closed_since(name, phase)) {
+        match (
+            document.is_on(name, phase),
+            document.closed_since(name, phase),
+        ) {
             (false, _) => model.open(j),
             (true, None) => {}
             (true, Some(since)) => {
@@ -111,7 +114,10 @@ pub(super) fn begin<S: Scalar>(document: &Document, scene: &mut Scene<S>, state:
     if state.is_empty() {
         return;
     }
-    let angles = scene.functions.iter_mut().flat_map(Function::first_angles_mut);
+    let angles = scene
+        .functions
+        .iter_mut()
+        .flat_map(Function::first_angles_mut);
     for first in angles {
         *first = Some(next().re());
     }
@@ -119,7 +125,10 @@ pub(super) fn begin<S: Scalar>(document: &Document, scene: &mut Scene<S>, state:
     if let Some(place) = event_quantity(document)
         && let Some(until) = &mut scene.until
     {
-        let known: Vec<Option<f64>> = scene.functions[place].first_angles_mut().map(|own| *own).collect();
+        let known: Vec<Option<f64>> = scene.functions[place]
+            .first_angles_mut()
+            .map(|own| *own)
+            .collect();
         for (own, known) in until.measure.first_angles_mut().zip(known) {
             *own = known;
         }
@@ -222,6 +231,18 @@ impl Problem {
     /// Whether it is a phase of a motion that events divide.
     pub fn is_phase(&self) -> bool {
         self.written.phase.is_some()
+    }
+
+    /// Name of the event with which its phase begins, if one does.
+    pub fn last_event(&self) -> Option<&str> {
+        let event = self.written.phase?.checked_sub(1)?;
+        let (name, _) = self.written.events.get_index(event)?;
+        Some(name)
+    }
+
+    /// When its phase begins at the design and the state `x` \[s\].
+    pub fn begin(&self, x: &[f64]) -> f64 {
+        self.split(x).1.last().copied().unwrap_or_default()
     }
 
     /// Name of the event that ends its phase, if one does.

@@ -85,7 +85,9 @@ pub fn with_places<S: Scalar>(
     builder.coupled = couplings::couple(document, &assembly, &mut model, missed);
     count_turns(document, &builder, &mut model);
     // Later phases begin as those before them end.
-    let sought = document.sought().filter(|_| document.phase.is_none_or(|phase| phase == 0));
+    let sought = document
+        .sought()
+        .filter(|_| document.phase.is_none_or(|phase| phase == 0));
     if let (Some(sought), None) = (sought, &unstarted) {
         let request = Request {
             sought,

@@ -20,6 +20,7 @@ use crate::statics::{self, StaticDesign, StaticsFailure};
 use crate::structures::functions::{self, Peak};
 use crate::{CheckedDerivative, composed, error, not_finite, resolved, start};
 pub use cases::InCases;
+pub(crate) use cases::phases;
 
 /// A design that was analysed.
 pub enum Analysed {

@@ -1,8 +1,8 @@
 //! One target during the backward march: its cotangents at the samples and at the present state,
 //! and its derivatives in the parameters so far.
 
-use super::{Target, WeightedEnd};
 use super::compensated::Compensated;
+use super::{Target, WeightedEnd};
 use crate::functions::linearised::Linearised;
 use crate::functions::snapshot::{Snapshot, SnapshotCotangent};
 use crate::functions::{Reactions, RowCotangent, Rows, Scene};

@@ -84,7 +84,11 @@ impl Checker<'_> {
             self.findings.push(Finding::new(pointer, found, expected));
         };
         let said = format!("\"{name}\"");
-        match [joint.is_some(), load, drive].iter().filter(|own| **own).count() {
+        match [joint.is_some(), load, drive]
+            .iter()
+            .filter(|own| **own)
+            .count()
+        {
             0 => {
                 let sections = ["joints", "loads", "drives"];
                 if sections.iter().any(|own| self.damage.holds(own, name)) {
@@ -106,7 +110,8 @@ impl Checker<'_> {
             }
         }
         let other = if on { &event.off } else { &event.on };
-        let again = [&event.off, &event.on].map(|all| all.iter().filter(|own| *own == name).count());
+        let again =
+            [&event.off, &event.on].map(|all| all.iter().filter(|own| *own == name).count());
         if other.iter().any(|own| own == name) || again.iter().any(|count| *count > 1) {
             fault(format!("{said} twice in one event"), "each name once");
             return;
@@ -119,7 +124,10 @@ impl Checker<'_> {
             fault(format!("{said}, which {found}"), expected);
         }
         if on && drive {
-            fault(format!("the drive {said}"), "joints and loads: a drive goes off only");
+            fault(
+                format!("the drive {said}"),
+                "joints and loads: a drive goes off only",
+            );
         }
         if let Some(joint) = joint {
             let driven = document.drives.values().any(|own| own.joint == name);
@@ -133,7 +141,10 @@ impl Checker<'_> {
             }
             if !document.couplings.is_empty() {
                 let expected = "loads and drives, as couplings go through joints";
-                fault(format!("the joint {said} of a machine with couplings"), expected);
+                fault(
+                    format!("the joint {said} of a machine with couplings"),
+                    expected,
+                );
             }
         }
     }

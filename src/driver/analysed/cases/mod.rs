@@ -1,7 +1,7 @@
 //! A design in all cases of a problem: each is analysed by itself, side by side on the cores. Values and derivatives of
 //! functions over cases follow from those of the cases.
 
-pub(super) mod phases;
+pub(crate) mod phases;
 mod spread;
 
 use super::{Analysed, AnalysisFailure, Simulated};

@@ -18,7 +18,7 @@ use crate::composed::{Derivative, infinitesimal};
 use crate::error::{Estimate, FunctionError, halved};
 use crate::evaluate::Evaluated;
 use crate::event::{self, Admit};
-use crate::frozen::{complex_design, complex_motion};
+use crate::frozen::{complex_design, complex_motion, settings};
 use crate::integrate::{IntegrationFailure, Settings, WorkCounts};
 use crate::integration::Integration;
 use crate::math::{Complex64, scalar::COMPLEX_STEP};
@@ -59,7 +59,7 @@ fn admit(case: &Case, x: &[f64]) -> Result<(), AnalysisFailure> {
 ///
 /// # Errors
 /// The first failure of a phase, or an event that does not come.
-pub(super) fn each<T>(
+pub(crate) fn each<T>(
     cases: &Cases,
     x: &[f64],
     mut of: impl FnMut(usize, &Problem, &[f64]) -> Result<T, AnalysisFailure>,
@@ -113,7 +113,11 @@ impl Backwards {
         let state = found[count..].iter().map(|own| by * own.value);
         match self.state.is_empty() {
             true => self.state = state.collect(),
-            false => self.state.iter_mut().zip(state).for_each(|(own, more)| *own += more),
+            false => self
+                .state
+                .iter_mut()
+                .zip(state)
+                .for_each(|(own, more)| *own += more),
         }
     }
 }
@@ -199,6 +203,60 @@ pub(super) fn derivatives(
     Ok((sums.into_iter().map(|own| own.row).collect(), work))
 }
 
+/// Settings of the steps of a phase, and when its event comes and how fast.
+type Steps = (Settings, (f64, f64));
+
+/// The steps of the phases of a motion, to be frozen.
+fn steps(all: &InCases<Analysed>) -> Result<Vec<Steps>, AnalysisFailure> {
+    let one = |(case, at): (&Case, &Analysed)| {
+        let at = motion(at).ok_or(AnalysisFailure::NoMotion)?;
+        let settings = settings(&case.problem, at).ok_or(AnalysisFailure::NoMotion)?;
+        let duration = at.run.duration;
+        let rate = match &at.scene.until {
+            Some(_) => event::rate(&at.scene, &settings, duration)?,
+            None => f64::NAN,
+        };
+        Ok((settings, (duration, rate)))
+    };
+    all.each().map(one).collect()
+}
+
+/// Derivatives of all functions along a direction by a complex step through all phases, and these in real numbers.
+fn complex_step(
+    (problem, cases): (&Problem, &Arc<Cases>),
+    known: &[Steps],
+    (x, direction): (&[f64], &[f64]),
+) -> Result<(Vec<f64>, InCases<Analysed>), AnalysisFailure> {
+    let design = complex_design(x, direction);
+    let (mut whole, mut begin) = (design.clone(), Complex64::from(0.0));
+    let mut values = vec![Complex64::from(0.0); cases.places.len()];
+    let mut phases = Vec::new();
+    for (p, (case, (settings, event))) in cases.list.iter().zip(known).enumerate() {
+        let found = complex_motion(&case.problem, settings, *event, &whole);
+        let (scene, run) = found.map_err(|failure| told(case, failure.into()))?;
+        let own = values.iter_mut().zip(&cases.places);
+        for (value, &(_, f)) in own.filter(|(_, place)| place.0 == p) {
+            *value = scene.functions[f].evaluate(&scene.model, &run).value;
+        }
+        let real: Vec<f64> = whole.iter().map(|x| x.re).collect();
+        let mut of_real = case.problem.scene::<f64>(&real);
+        of_real.duration = run.duration.re;
+        phases.push(Some(Analysed::Motion(Box::new(Evaluated {
+            x: real,
+            scene: of_real,
+            run: run.real(),
+            composition: case.problem.composition.clone(),
+        }))));
+        if let Some(next) = cases.list.get(p + 1) {
+            let state = next.problem.state_after(&scene, &run, begin);
+            begin += run.duration;
+            whole = [&design[..], &state].concat();
+        }
+    }
+    let found = infinitesimal(&problem.composition, &design, &values, COMPLEX_STEP);
+    Ok((found, InCases::new(problem, cases, x, phases)))
+}
+
 /// Derivatives of every function in every variable at the design `x`, function by function: by the adjoint and by complex
 /// steps through all phases.
 ///
@@ -211,64 +269,21 @@ pub(in crate::analysed) fn check(
     let which: Vec<usize> = (0..problem.function_names.len()).collect();
     let mut integration = Integration::of(problem, Some(&which), true);
     let (at, _) = InCases::<Analysed>::with(&mut integration, (problem, cases), x, &which)?;
-    let mut known: Vec<(&Settings, (f64, f64))> = Vec::new();
-    for (own, phase) in integration.cases.iter().zip(&at.list) {
-        let settings = own.as_ref().and_then(|own| Some(own.chosen()?.0));
-        let (Some(settings), Some(at)) = (settings, phase.as_ref().and_then(motion)) else {
-            return Ok(Vec::new());
-        };
-        let duration = at.run.duration;
-        let rate = match &at.scene.until {
-            Some(_) => event::rate(&at.scene, settings, duration)?,
-            None => f64::NAN,
-        };
-        known.push((settings, (duration, rate)));
-    }
-    let along = |i: usize| -> Result<(Vec<f64>, Vec<Evaluated>), AnalysisFailure> {
+    let known = steps(&at)?;
+    let along = |i: usize| {
         let unit = |j: usize| if i == j { 1.0 } else { 0.0 };
         let direction: Vec<f64> = (0..x.len()).map(unit).collect();
-        let design = complex_design(x, &direction);
-        let (mut whole, mut begin) = (design.clone(), Complex64::from(0.0));
-        let mut values = vec![Complex64::from(0.0); cases.places.len()];
-        let mut phases = Vec::new();
-        for (p, case) in cases.list.iter().enumerate() {
-            let (settings, event) = known[p];
-            let found = complex_motion(&case.problem, settings, event, &whole);
-            let (scene, run) = found.map_err(|failure| told(case, failure.into()))?;
-            for (value, &(_, f)) in (values.iter_mut().zip(&cases.places)).filter(|(_, own)| own.0 == p) {
-                *value = scene.functions[f].evaluate(&scene.model, &run).value;
-            }
-            let real: Vec<f64> = whole.iter().map(|x| x.re).collect();
-            let mut of_real = case.problem.scene::<f64>(&real);
-            of_real.duration = run.duration.re;
-            let at = Evaluated {
-                x: real,
-                scene: of_real,
-                run: run.real(),
-                composition: case.problem.composition.clone(),
-            };
-            if let Some(next) = cases.list.get(p + 1) {
-                let state = next.problem.state_after(&scene, &run, begin);
-                begin += run.duration;
-                whole = [&design[..], &state].concat();
-            }
-            phases.push(at);
-        }
-        let found = infinitesimal(&problem.composition, &design, &values, COMPLEX_STEP);
-        Ok((found, phases))
+        complex_step((problem, cases), &known, (x, &direction))
     };
-    let mut steps: Vec<(Vec<f64>, Vec<Evaluated>)> = (0..x.len())
+    let found: Vec<(Vec<f64>, InCases<Analysed>)> = (0..x.len())
         .into_par_iter()
         .map(along)
         .collect::<Result<_, _>>()?;
-    let Some((_, first)) = steps.first_mut() else {
+    let Some((_, same)) = found.first() else {
         return Ok(Vec::new());
     };
-    let of_first = first.drain(..).map(|at| Some(Analysed::Motion(Box::new(at))));
-    let same = InCases::new(problem, cases, x, of_first.collect());
-    let (adjoint, _) = derivatives(&same, &which)?;
+    let (adjoint, _) = derivatives(same, &which)?;
     let (in_use, _) = derivatives(&at, &which)?;
-    let own_size = |f: usize| size(&same, f);
     let scale = |i: usize| problem.variables[i].scale;
     let one = |f: usize, i: usize| {
         let sizes = adjoint[f].iter().enumerate();
@@ -279,13 +294,54 @@ pub(in crate::analysed) fn check(
             function: f,
             variable: i,
             adjoint: adjoint[f][i].value,
-            complex_step: steps[i].0[f],
-            terms: adjoint[f][i].terms.max(largest).max(own_size(f) / change),
+            complex_step: found[i].0[f],
+            terms: (adjoint[f][i].terms.max(largest)).max(size(same, f) / change),
             in_use: in_use[f][i].value,
         }
     };
-    let pairs = which.iter().flat_map(|&f| (0..x.len()).map(move |i| (f, i)));
+    let pairs = which
+        .iter()
+        .flat_map(|&f| (0..x.len()).map(move |i| (f, i)));
     Ok(pairs.map(|(f, i)| one(f, i)).collect())
+}
+
+/// For every function: its derivative along a direction by the adjoint and by a complex step, Σ |g_i d_i|, and the size of its
+/// terms.
+///
+/// # Errors
+/// If a phase fails.
+pub(crate) fn directional(
+    problem: &Problem,
+    all: &InCases<Simulated>,
+    direction: &[f64],
+) -> Result<Vec<[f64; 4]>, AnalysisFailure> {
+    let which: Vec<usize> = (0..problem.function_names.len()).collect();
+    let known = steps(&repeated(problem, all))?;
+    let (complex, same) = complex_step((problem, &all.cases), &known, (&all.x, direction))?;
+    let (adjoint, _) = derivatives(&same, &which)?;
+    let one = |&f: &usize| {
+        let along = || adjoint[f].iter().zip(direction);
+        let own: f64 = along().map(|(d, by)| d.value * by).sum();
+        let sizes: f64 = along().map(|(d, by)| (d.value * by).abs()).sum();
+        let terms: f64 = along().map(|(d, by)| d.terms * by.abs()).sum();
+        [own, complex[f], sizes, terms.max(size(&same, f))]
+    };
+    Ok(which.iter().map(one).collect())
+}
+
+/// The same motions without their observations.
+fn repeated(problem: &Problem, all: &InCases<Simulated>) -> InCases<Analysed> {
+    let again = |at: &Option<Simulated>| {
+        let at = at.as_ref().and_then(observed)?;
+        let same = at.with_run(at.scene.clone(), at.run.clone());
+        Some(Analysed::Motion(Box::new(same)))
+    };
+    InCases::new(
+        problem,
+        &all.cases,
+        &all.x,
+        all.list.iter().map(again).collect(),
+    )
 }
 
 /// The size of a function that determines its round-off.
@@ -314,11 +370,7 @@ pub(super) fn estimate(
     gradients: bool,
 ) -> Result<Vec<FunctionError>, AnalysisFailure> {
     let known: Vec<&Evaluated> = all.list.iter().flatten().filter_map(observed).collect();
-    let again = |at: &&Evaluated| {
-        let same = at.with_run(at.scene.clone(), at.run.clone());
-        Some(Analysed::Motion(Box::new(same)))
-    };
-    let coarse = InCases::new(problem, &all.cases, &all.x, known.iter().map(again).collect());
+    let coarse = repeated(problem, all);
     let finer = |p: usize, own: &Problem, x: &[f64]| {
         let run = &known[p].run;
         let settings = halved(run, (run.has_cells, true), own.simulation.limits.clone());
@@ -333,7 +385,12 @@ pub(super) fn estimate(
     };
     let fine = each(&all.cases, &all.x, finer, |at| Some(at))?;
     let boxed = |at: Option<Evaluated>| Some(Analysed::Motion(Box::new(at?)));
-    let fine = InCases::new(problem, &all.cases, &all.x, fine.into_iter().map(boxed).collect());
+    let fine = InCases::new(
+        problem,
+        &all.cases,
+        &all.x,
+        fine.into_iter().map(boxed).collect(),
+    );
     let rows = |of: &InCases<Analysed>| match gradients && !problem.variables.is_empty() {
         true => Ok(derivatives(of, which)?.0),
         false => Ok::<_, AnalysisFailure>(vec![Vec::new(); which.len()]),
