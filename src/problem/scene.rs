@@ -5,6 +5,7 @@ use super::couplings;
 use super::flexible::{FlexibleBodies, HeldPlace};
 use super::loads::stopped;
 use super::mass::mass_properties;
+use super::phases;
 use super::placement::Assembly;
 use super::quantities::FunctionBuilder;
 use super::start_rates;
@@ -17,6 +18,7 @@ use crate::model::{DegreeOfFreedom, Mobility, Model, RigidBody};
 use crate::quantity::{Vector, vector};
 use crate::schema::Document;
 use crate::schema::couplings::{Relation, Term};
+use crate::schema::events::When;
 use crate::schema::flexible::Start;
 use crate::schema::functions::OfMotion;
 use crate::schema::loads::Load;
@@ -56,6 +58,9 @@ pub fn with_places<S: Scalar>(
         loads: super::loads::loads(document, &assembly),
         flexible: Vec::new(),
     };
+    if !document.events.is_empty() {
+        phases::open_at_start(document, &mut model);
+    }
     let numbers = FlexibleBodies::weigh(document, &mut model, x);
     let mut unstarted = start(document, &assembly, &mut model, x).err();
     let mut flexible = FlexibleBodies::add(document, &assembly, &mut model, numbers, x);
@@ -79,7 +84,11 @@ pub fn with_places<S: Scalar>(
     let missed = |model: &Model<S>, own: &Relation| miss(&builder, model, own);
     builder.coupled = couplings::couple(document, &assembly, &mut model, missed);
     count_turns(document, &builder, &mut model);
-    if let (Some(sought), None) = (document.sought(), &unstarted) {
+    // Later phases begin as those before them end.
+    let sought = document
+        .sought()
+        .filter(|_| document.phase.is_none_or(|phase| phase == 0));
+    if let (Some(sought), None) = (sought, &unstarted) {
         let request = Request {
             sought,
             turning: turning(document, x),
@@ -105,16 +114,19 @@ pub fn with_places<S: Scalar>(
         .collect();
     let simulation = document.simulation.as_ref();
     let simulation = simulation.expect("a scene has a simulation, which is checked before");
-    let mut until = simulation
-        .until
-        .as_ref()
+    let (until, duration) = match document.next_event().map(|(_, event)| &event.when) {
+        None => (simulation.until.as_ref(), &simulation.duration),
+        Some(When::Reaches(until)) => (Some(&**until), &simulation.duration),
+        Some(When::At(own)) => (None, &own.time),
+    };
+    let mut until = until
         .map(|until| TerminalEvent::new(builder.quantity(&until.measure), until.reaches.get(x)));
     flexible.move_functions(&mut model, &mut functions, &mut until);
     let apart = flexible.apart.take();
     let unstarted = unstarted.or(apart.map(|body| AssemblyFailure::MovedApart { body }));
     let scene = Scene {
         model,
-        duration: simulation.duration.get(x),
+        duration: duration.get(x),
         until,
         functions,
         unstarted,

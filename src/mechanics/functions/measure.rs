@@ -38,6 +38,17 @@ impl<S: Scalar> Instant<S> {
         }
     }
 
+    /// The rotation of [`Instant::watched_rotation`], to be changed.
+    pub fn watched_rotation_mut(&mut self) -> Option<&mut Rotation<S>> {
+        match self {
+            Instant::Rotation(rotation) => Some(rotation),
+            Instant::Range {
+                gate: Some(gate), ..
+            } => Some(&mut gate.rotation),
+            _ => None,
+        }
+    }
+
     /// Value in a snapshot, and without aggregation over points: their largest value. See [`Instant::value`].
     pub fn value_and_largest(&self, at: &Snapshot<S>, turns: f64) -> (S, S) {
         match self {

@@ -124,6 +124,20 @@ impl Lowering {
         found
     }
 
+    /// The plane of the motion alone: all bodies keep their numbers and all of their states, with which another scene
+    /// may begin.
+    pub fn of_plane(
+        real: &dyn Fn(&[f64]) -> Scene<f64>,
+        dual: &dyn Fn(&[Dual]) -> Scene<Dual>,
+        variables: &[Range],
+    ) -> Self {
+        let designs = Designs::new(real, dual, variables);
+        match shakes(&designs.start) {
+            true => Self::none(),
+            false => Self::of_plane_and_points(Plane::find(&designs), (Vec::new(), Vec::new())),
+        }
+    }
+
     /// No reduction, as a function looks at vibrations of the whole machine.
     fn none() -> Self {
         let what = "a function looks at vibrations of the whole machine in all directions";

@@ -20,6 +20,7 @@ pub mod reduced;
 pub mod rigid_body;
 pub mod shapes;
 pub mod shell_kind;
+mod switched;
 pub mod table;
 pub mod time_function;
 

@@ -57,6 +57,45 @@ impl<S: Scalar> TimeFunction<S> {
         Self::Polynomial(vec![value])
     }
 
+    /// The same function of the time since `start` \[s\]: m(t + start).
+    pub fn since(&self, start: S) -> Self {
+        match self {
+            Self::Polynomial(coefficients) => {
+                // Taylor's polynomial there, by repeated division (Horner).
+                let mut all = coefficients.clone();
+                for from in 0..all.len() {
+                    for k in (from..all.len() - 1).rev() {
+                        let next = all[k + 1];
+                        all[k] += next * start;
+                    }
+                }
+                Self::Polynomial(all)
+            }
+            Self::Harmonic {
+                mean,
+                amplitude,
+                frequency,
+                phase,
+            } => Self::Harmonic {
+                mean: *mean,
+                amplitude: *amplitude,
+                frequency: *frequency,
+                phase: *phase + *frequency * start * TAU,
+            },
+            Self::Table {
+                times,
+                values,
+                interpolation,
+                smoothness,
+            } => Self::Table {
+                times: times.iter().map(|&t| t - start).collect(),
+                values: values.clone(),
+                interpolation: *interpolation,
+                smoothness: *smoothness,
+            },
+        }
+    }
+
     /// Value at `time` \[s\].
     pub fn value(&self, time: S) -> S {
         self.derivatives(time)[0]
@@ -236,6 +275,21 @@ mod tests {
                 for k in 0..3 {
                     let rate = exact[k].im / COMPLEX_STEP;
                     assert!((rate - given[k + 1]).abs() <= 1e-12 * (1.0 + rate.abs()));
+                }
+            }
+        }
+    }
+
+    #[test]
+    fn a_function_since_an_instant_is_that_of_the_later_time() {
+        for course in courses() {
+            for start in [0.0, 0.37, 1.1, 2.6] {
+                let later = course.since(start);
+                for t in [0.02, 0.2, 0.6, 0.79, 1.7] {
+                    let (given, found) = (course.derivatives(start + t), later.derivatives(t));
+                    for (a, b) in given.iter().zip(found) {
+                        assert!((a - b).abs() <= 1e-11 * (1.0 + a.abs()), "{course:?} {t}");
+                    }
                 }
             }
         }

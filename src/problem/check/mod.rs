@@ -3,6 +3,7 @@
 mod beams;
 mod couplings;
 mod elements;
+mod events;
 mod joints;
 mod load_cases;
 mod loads;
@@ -39,6 +40,7 @@ pub(super) fn check(document: &Document, damage: &Damage) -> Vec<Finding> {
     checker.drives();
     checker.couplings();
     checker.structures();
+    checker.events();
     checker.analysis();
     checker.study();
     checker.findings

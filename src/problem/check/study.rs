@@ -175,6 +175,9 @@ impl Checker<'_> {
         if let Function::Expression(_) | Function::OverCases(_) = function {
             return;
         }
+        if let Function::EventTime(event) = function {
+            self.event(&join(pointer, "event_time"), event);
+        }
         let Some(function) = function.of_motion() else {
             let expected = "a function of a motion, or \"structures\" without a \"simulation\"";
             self.fault(Finding::new(pointer, "a function of structures", expected));
