@@ -88,6 +88,13 @@ macro_rules! time_functions {
 
 time_functions!(Turning, "an angle", "rad", "rad/s", "rad, rad/s, rad/s², …");
 time_functions!(Sliding, "a displacement", "m", "m/s", "m, m/s, m/s², …");
+time_functions!(
+    Following,
+    "an angle, displacement or distance",
+    "m or rad",
+    "m/s or rad/s",
+    "m, m/s, m/s², … or rad, rad/s, rad/s², …"
+);
 
 /// A time function without its unit.
 pub enum TimeFunction<'a> {

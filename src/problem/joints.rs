@@ -164,7 +164,8 @@ pub(super) fn drives<S: Scalar>(
         .collect()
 }
 
-fn course<S: Scalar>(assembly: &Assembly<S>, written: Written) -> TimeFunction<S> {
+/// A motion in time.
+pub(super) fn course<S: Scalar>(assembly: &Assembly<S>, written: Written) -> TimeFunction<S> {
     let get = |quantity: &Quantity| assembly.quantity(quantity);
     match written {
         Written::Rate(rate) => TimeFunction::Polynomial(vec![S::zero(), get(rate)]),

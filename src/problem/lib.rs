@@ -13,6 +13,7 @@ mod check;
 mod combined;
 mod composed;
 mod composing;
+mod controllers;
 mod couplings;
 mod data_file;
 mod data_text;

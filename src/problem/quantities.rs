@@ -2,6 +2,7 @@
 
 use super::couplings::{Followed, observed};
 use super::flexible::{FlexibleBodies, Sections, station, stations};
+use super::controllers::controlled;
 use super::loads::stopped;
 use super::placement::{Assembly, GROUND};
 use super::starting_angles::{starting_angle, starting_turn};
@@ -257,6 +258,14 @@ impl<S: Scalar> FunctionBuilder<'_, S> {
                 true => self.of_load(&of.load, LoadPart::PenetrationAngle),
                 false => self.of_load(&of.load, LoadPart::Penetration),
             },
+            I::Effort(of) => match self.controls_angle(&of.load) {
+                true => self.of_load(&of.load, LoadPart::EffortTorque),
+                false => self.of_load(&of.load, LoadPart::EffortForce),
+            },
+            I::TrackingError(of) => match self.controls_angle(&of.load) {
+                true => self.of_load(&of.load, LoadPart::ErrorAngle),
+                false => self.of_load(&of.load, LoadPart::ErrorLength),
+            },
             I::Energy(part) => Instant::Energy(match part {
                 Energy::Kinetic => EnergyPart::Kinetic,
                 Energy::Potential => EnergyPart::Potential,
@@ -367,6 +376,14 @@ impl<S: Scalar> FunctionBuilder<'_, S> {
             return false;
         };
         stopped(self.document, stop) == Some(DegreeOfFreedom::Rotation)
+    }
+
+    /// Whether a load is the controller of an angle.
+    fn controls_angle(&self, name: &str) -> bool {
+        let Some(Load::Controller(own)) = self.document.loads.get(name) else {
+            return false;
+        };
+        controlled(self.document, own) == Some(DegreeOfFreedom::Rotation)
     }
 
     fn reaction(&self, of: &JointReaction, part: WrenchPart) -> Instant<S> {

@@ -3,6 +3,7 @@
 use super::parts::distinct;
 use super::settings::Method;
 use crate::math::Scalar;
+use crate::model::controller::Controller;
 use crate::model::table::{breaks, continuous};
 use crate::model::{Model, TimeFunction};
 
@@ -16,7 +17,10 @@ where
 {
     let magnitudes = model.loads.iter().filter_map(|load| load.kind.course());
     let drives = model.joints.iter().flat_map(|joint| &joint.drives);
-    magnitudes.chain(drives.map(|drive| &drive.course))
+    let controllers = model.controllers().flat_map(Controller::courses);
+    magnitudes
+        .chain(controllers)
+        .chain(drives.map(|drive| &drive.course))
 }
 
 /// Whether loads or drives have kinks at some time.

@@ -149,6 +149,7 @@ impl Welded {
                     | LoadKind::Friction { .. }
                     | LoadKind::Drag { .. }
                     | LoadKind::JointStop { .. }
+                    | LoadKind::Controller(_)
                     | LoadKind::Distributed(_) => continue,
                 };
                 if links(pair) {
