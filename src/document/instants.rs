@@ -3,8 +3,8 @@
 use super::combined::{Distance, PowerOf, Relative};
 use super::couplings::OfCoupling;
 use super::measured::{
-    AngularMomentum, JointReaction, JointSlide, LargestFibreStress, LargestSectionForce, OfController, OfSpring,
-    OfStop, SectionComponent, SectionPlace,
+    AngularMomentum, JointReaction, JointSlide, LargestFibreStress, LargestSectionForce,
+    OfController, OfSpring, OfStop, SectionComponent, SectionPlace,
 };
 use super::mechanics::Point;
 use crate::quantity::{Quantity, Vector};

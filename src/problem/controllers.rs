@@ -1,18 +1,19 @@
 //! Makes the controllers of a model from those of a file.
+//!
+//! At rest a lag has settled, and an integral is whatever leaves no error: the joint is held at its reference as by a drive,
+//! whose torque or force is the effort.
 
 use super::joints::course;
 use super::loads::{course as magnitude, dof, ends, joint};
 use super::placement::Assembly;
 use crate::math::{Scalar, Vec3};
-use crate::model::controller::{
-    Controller, Coordinate, Feedback, Integral, Lag, Limits, Weight,
-};
-use crate::model::{DegreeOfFreedom, TimeFunction};
+use crate::model::controller::{Controller, Coordinate, Feedback, Integral, Lag, Limits, Weight};
+use crate::model::{DegreeOfFreedom, Drive, TimeFunction};
 use crate::quantity::Quantity;
 use crate::schema::Document;
 use crate::schema::controllers::{Controller as Written, Feedback as WrittenFeedback, Reference};
 use crate::schema::drives::TimeFunction as Course;
-use crate::schema::loads::Motion;
+use crate::schema::loads::{Load, Motion};
 
 /// A place that [`crate::model::Model::add_states`] fills.
 const NO_BODY: usize = usize::MAX;
@@ -23,6 +24,9 @@ pub fn controller<S: Scalar>(
     assembly: &Assembly<S>,
     written: &Written,
 ) -> Controller<S> {
+    if is_held(document, written) {
+        return idle(coordinate(document, assembly, written));
+    }
     let get = |quantity: &Quantity| assembly.quantity(quantity);
     let some = |quantity: &Option<Quantity>| quantity.as_ref().map(get);
     let motor = written.motor.as_ref();
@@ -75,11 +79,61 @@ pub fn controller<S: Scalar>(
         },
         lag: motor
             .and_then(|own| own.lag.as_ref())
+            .filter(|_| !document.is_rest())
             .map(|time| Lag {
                 state: NO_BODY,
                 time: get(time),
             }),
     }
+}
+
+/// Whether the integral of a controller holds its joint, as it does at rest.
+pub fn is_held(document: &Document, written: &Written) -> bool {
+    document.is_rest() && written.integral.is_some()
+}
+
+/// A controller without effort.
+fn idle<S: Scalar>(coordinate: Coordinate<S>) -> Controller<S> {
+    Controller {
+        feedback: vec![Feedback {
+            coordinate,
+            reference: TimeFunction::constant(S::zero()),
+            proportional: S::zero(),
+            derivative: S::zero(),
+        }],
+        integral: None,
+        feed_forward: TimeFunction::constant(S::zero()),
+        weights: Vec::new(),
+        limits: Limits {
+            ratio: S::one(),
+            effort: None,
+            line: None,
+            power: None,
+        },
+        lag: None,
+    }
+}
+
+/// The drives by which integrals hold a joint at rest.
+pub fn held_at_rest<S: Scalar>(
+    document: &Document,
+    assembly: &Assembly<S>,
+    joint: &str,
+) -> Vec<Drive<S>> {
+    let mut all = Vec::new();
+    for load in document.loads.values() {
+        let Load::Controller(own) = load else {
+            continue;
+        };
+        if is_held(document, own)
+            && own.joint.as_deref() == Some(joint)
+            && let Some(dof) = controlled(document, own)
+        {
+            let course = reference(document, assembly, &own.reference);
+            all.push(Drive { dof, course });
+        }
+    }
+    all
 }
 
 fn coordinate<S: Scalar>(

@@ -162,9 +162,7 @@ fn kind<S: Scalar>(
             let spread = dead(assembly, shares, (&load.direction, load.axes));
             distributed(&load.body, spread, load.magnitude.parts())
         }
-        WrittenLoad::Controller(own) => {
-            LoadKind::Controller(controller(document, assembly, own))
-        }
+        WrittenLoad::Controller(own) => LoadKind::Controller(controller(document, assembly, own)),
         WrittenLoad::Line(load) => {
             let own = elements(document, &load.body);
             let beams = own.sets.beam_sets[&load.beams].iter();
@@ -184,7 +182,11 @@ pub(super) struct BothEnds<S> {
     pub point_b: Vec3<S>,
 }
 
-pub(super) fn ends<S: Scalar>(assembly: &Assembly<S>, between: &[String; 2], at: &Ends) -> BothEnds<S> {
+pub(super) fn ends<S: Scalar>(
+    assembly: &Assembly<S>,
+    between: &[String; 2],
+    at: &Ends,
+) -> BothEnds<S> {
     let sides = match between[0] == GROUND {
         true => [1, 0],
         false => [0, 1],

@@ -1,9 +1,9 @@
 //! The map from a design to a scene, analytic in the design.
 
 use super::aggregates::rho_of;
+use super::controllers::turned;
 use super::couplings;
 use super::flexible::{FlexibleBodies, HeldPlace};
-use super::controllers::turned;
 use super::loads::stopped;
 use super::mass::mass_properties;
 use super::placement::Assembly;

@@ -155,24 +155,30 @@ impl<S> Controller<S> {
     /// The bodies whose velocities are I and F.
     pub fn states(&self) -> impl Iterator<Item = usize> {
         let integral = self.integral.as_ref().map(|own| own.state);
-        integral.into_iter().chain(self.lag.as_ref().map(|own| own.state))
+        integral
+            .into_iter()
+            .chain(self.lag.as_ref().map(|own| own.state))
     }
 
     /// The joints whose turns are counted, with their counters.
     pub fn counters(&self) -> impl Iterator<Item = (usize, usize)> {
-        self.feedback.iter().filter_map(|own| own.coordinate.counted())
+        self.feedback
+            .iter()
+            .filter_map(|own| own.coordinate.counted())
     }
 
     /// Places of the counters of the joints whose rotation is measured.
     pub fn rotations(&mut self) -> impl Iterator<Item = &mut Option<usize>> {
-        self.feedback.iter_mut().filter_map(|own| match &mut own.coordinate {
-            Coordinate::Joint {
-                dof: DegreeOfFreedom::Rotation,
-                counter,
-                ..
-            } => Some(counter),
-            Coordinate::Joint { .. } | Coordinate::Distance { .. } => None,
-        })
+        self.feedback
+            .iter_mut()
+            .filter_map(|own| match &mut own.coordinate {
+                Coordinate::Joint {
+                    dof: DegreeOfFreedom::Rotation,
+                    counter,
+                    ..
+                } => Some(counter),
+                Coordinate::Joint { .. } | Coordinate::Distance { .. } => None,
+            })
     }
 
     /// The functions of time: references and the feed-forward.
@@ -210,7 +216,10 @@ impl<S: Scalar> Model<S> {
             let LoadKind::Controller(own) = kind else {
                 continue;
             };
-            let integral = own.integral.as_mut().map(|own| (&mut own.state, "integral"));
+            let integral = own
+                .integral
+                .as_mut()
+                .map(|own| (&mut own.state, "integral"));
             let lag = own.lag.as_mut().map(|own| (&mut own.state, "lag"));
             for (state, what) in integral.into_iter().chain(lag) {
                 let mut body = RigidBody::massless(format!("{name}, {what}"));

@@ -19,6 +19,7 @@ pub mod mobility;
 pub mod normal_law;
 pub mod reduced;
 pub mod rigid_body;
+pub mod s_curve;
 pub mod shapes;
 pub mod shell_kind;
 pub mod table;
@@ -35,6 +36,7 @@ pub use load::{Load, LoadKind};
 pub use mobility::Mobility;
 pub use normal_law::NormalLaw;
 pub use rigid_body::RigidBody;
+pub use s_curve::SCurve;
 pub use table::{Interpolation, Smoothness};
 pub use time_function::TimeFunction;
 

@@ -5,7 +5,7 @@ use crate::finding::Finding;
 use crate::model::JointKind;
 use crate::pointer::{advice, join};
 use crate::schema::controllers::{Controller, Reference};
-use crate::schema::drives::TimeFunction;
+use crate::schema::functions::{Function, OfMotion};
 use crate::schema::loads::Load;
 
 impl Checker<'_> {
@@ -35,6 +35,7 @@ impl Checker<'_> {
             let expected = "none: weights are balanced about or along the axis of a joint";
             self.fault(Finding::new(place, found, expected).of_key());
         }
+        self.controller_at_rest(pointer, own);
         let motor = own.motor.as_ref();
         let limited = motor.is_some_and(|motor| {
             motor.torque.is_some() || motor.curve.is_some() || motor.power.is_some()
@@ -50,20 +51,55 @@ impl Checker<'_> {
         }
     }
 
+    /// Checks a controller of a machine at rest, whose integral holds a joint as a drive does.
+    fn controller_at_rest(&mut self, pointer: &str, own: &Controller) {
+        let document = self.document;
+        if !document.is_rest() {
+            return;
+        }
+        if own.integral.is_some() {
+            let place = join(pointer, "integral");
+            if own.between.is_some() {
+                let found = "the integral of a distance, of a machine at rest";
+                let expected =
+                    "the integral of a joint; a joint of the kind \"rod\" holds a distance";
+                self.fault(Finding::new(&place, found, expected).of_key());
+            }
+            let driven =
+                (document.drives.values()).find(|drive| Some(&drive.joint) == own.joint.as_ref());
+            if driven.is_some() {
+                let found = "an integral of a joint that is driven, of a machine at rest";
+                let expected = "one of them, as each holds the joint";
+                self.fault(Finding::new(&place, found, expected).of_key());
+            }
+        }
+        let lag = own.motor.as_ref().is_some_and(|motor| motor.lag.is_some());
+        let vibrates = |function: &Function| {
+            matches!(
+                function.of_motion(),
+                Some(
+                    OfMotion::Frequency(_)
+                        | OfMotion::LowestFrequency(_)
+                        | OfMotion::DampingRatio(_)
+                        | OfMotion::CriticalSpeed(_)
+                )
+            )
+        };
+        let modes = document.told_modes().is_some() || document.functions.values().any(vibrates);
+        if modes && (lag || own.integral.is_some()) {
+            let found = "a state of a controller, beside modes of a machine at rest";
+            let expected = "a controller without \"integral\" and \"lag\"";
+            let hint = "in a motion \"frequency\" and \"damping_ratio\" at an instant are those of the closed loop, states included";
+            let finding = Finding::new(pointer, found, expected).of_key();
+            self.fault(finding.hint(Some(hint.to_owned())));
+        }
+    }
+
     fn reference(&mut self, pointer: &str, reference: &Option<Reference>) {
         let Some(Reference::Varying(course)) = reference else {
             return;
         };
-        let pointer = join(pointer, "reference");
-        match course.parts() {
-            TimeFunction::Table(times, values, _) => self.table(&pointer, times, values),
-            TimeFunction::Polynomial([]) => {
-                let expected = "at least one coefficient";
-                let place = join(&pointer, "polynomial");
-                self.fault(Finding::new(place, "an empty list", expected));
-            }
-            TimeFunction::Rate(_) | TimeFunction::Polynomial(_) | TimeFunction::Harmonic(_) => {}
-        }
+        self.motion(&join(pointer, "reference"), course.parts());
     }
 
     /// Checks that a load is a controller.

@@ -149,7 +149,10 @@ impl<'a, S: Scalar> Running<'a, S> {
             gravity: here.model.gravity,
             errors,
             weights: weights.collect(),
-            integral: own.integral.as_ref().map_or(S::zero(), |own| state(own.state)),
+            integral: own
+                .integral
+                .as_ref()
+                .map_or(S::zero(), |own| state(own.state)),
             lagged: own.lag.as_ref().map_or(S::zero(), |own| state(own.state)),
             demand: S::zero(),
             limited: motor::limited(&own.limits, S::zero(), S::zero()),

@@ -71,7 +71,13 @@ impl Coordinate {
     }
 
     /// Adds the derivatives of `by_value` x + `by_rate` ẋ.
-    pub(super) fn pull<S: Scalar>(self, at: &Acting<S>, by_value: S, by_rate: S, out: &mut Pulled<S>) {
+    pub(super) fn pull<S: Scalar>(
+        self,
+        at: &Acting<S>,
+        by_value: S,
+        by_rate: S,
+        out: &mut Pulled<S>,
+    ) {
         match self {
             Self::Angle => {
                 pull_angle(at, by_value, out);

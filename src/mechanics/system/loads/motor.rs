@@ -132,7 +132,13 @@ mod tests {
     #[test]
     fn derivatives_are_those_of_the_complex_step() {
         for limits in all() {
-            for (demand, rate) in [(0.3, 0.2), (-2.9, 1.4), (3.4, -2.0), (40.0, 2.7), (1e9, 0.0)] {
+            for (demand, rate) in [
+                (0.3, 0.2),
+                (-2.9, 1.4),
+                (3.4, -2.0),
+                (40.0, 2.7),
+                (1e9, 0.0),
+            ] {
                 let found = limited(&limits, demand, rate);
                 let mut given = vec![found.by_demand, found.by_rate];
                 let mut own = limits.map(&mut |_| 0.0);
@@ -148,7 +154,10 @@ mod tests {
                         i += 1;
                         Complex64::new(x, step(i))
                     });
-                    let inputs = [Complex64::new(demand, step(0)), Complex64::new(rate, step(1))];
+                    let inputs = [
+                        Complex64::new(demand, step(0)),
+                        Complex64::new(rate, step(1)),
+                    ];
                     let exact = limited(&moved, inputs[0], inputs[1]).effort.im / COMPLEX_STEP;
                     let near = (given - exact).abs() <= 1e-12 * exact.abs().max(1e-3);
                     assert!(near, "{limits:?} {demand} {rate} {wanted}: {given} {exact}");

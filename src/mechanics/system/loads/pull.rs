@@ -308,7 +308,12 @@ pub(super) fn pull_point<S: Scalar>(
 }
 
 /// Pulls the cotangent of an axis back.
-pub(super) fn pull_axis<S: Scalar>(side: &JointSide<S>, axis: usize, x: Vec3<S>, out: &mut SideCotangent<S>) {
+pub(super) fn pull_axis<S: Scalar>(
+    side: &JointSide<S>,
+    axis: usize,
+    x: Vec3<S>,
+    out: &mut SideCotangent<S>,
+) {
     let by = marker::pull_back(
         side.motion,
         &side.frame.axes[axis],
