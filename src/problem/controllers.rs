@@ -8,7 +8,7 @@ use super::loads::{course as magnitude, dof, ends, joint};
 use super::placement::Assembly;
 use crate::math::{Scalar, Vec3};
 use crate::model::controller::{Controller, Coordinate, Feedback, Integral, Lag, Limits, Weight};
-use crate::model::{DegreeOfFreedom, Drive, TimeFunction};
+use crate::model::{DegreeOfFreedom, Drive, LoadKind, Model, TimeFunction};
 use crate::quantity::Quantity;
 use crate::schema::Document;
 use crate::schema::controllers::{Controller as Written, Feedback as WrittenFeedback, Reference};
@@ -186,6 +186,34 @@ fn held<S: Scalar>(document: &Document, course: TimeFunction<S>) -> TimeFunction
         true => TimeFunction::constant(course.value(S::zero())),
         false => course,
     }
+}
+
+/// What the states and measurements of each controller of a model cost, for messages.
+pub(super) fn described(model: &Model<f64>) -> Vec<String> {
+    let unknowns: usize = model
+        .bodies
+        .iter()
+        .map(|body| body.mobility.unknowns())
+        .sum();
+    let mut all = Vec::new();
+    for load in &model.loads {
+        let LoadKind::Controller(own) = &load.kind else {
+            continue;
+        };
+        let integral = own.integral.as_ref().map(|_| "its integral");
+        let lag = own.lag.as_ref().map(|_| "its lag");
+        let states: Vec<&str> = integral.into_iter().chain(lag).collect();
+        let cost = match states.len() {
+            0 => "no state".to_owned(),
+            n => format!("{n} of {unknowns} unknowns for {}", states.join(" and ")),
+        };
+        let measured = own.feedback.len();
+        all.push(format!(
+            "{}: {cost}; it measures {measured} of the coordinates",
+            load.name
+        ));
+    }
+    all
 }
 
 /// The degree of freedom that a controller acts on; `None` if it controls a distance.

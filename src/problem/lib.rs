@@ -552,6 +552,11 @@ impl Problem {
         couplings::described(&self.written, model)
     }
 
+    /// What the states of controllers cost in an unreduced model of the problem, for messages.
+    pub fn controllers(&self, model: &Model<f64>) -> Vec<String> {
+        controllers::described(model)
+    }
+
     /// The flexible bodies at the design `x`: their coordinates and natural frequencies.
     pub fn flexible_bodies(&self, x: &[f64]) -> Vec<String> {
         flexible::described(&self.written, &self.extended(x))

@@ -3,7 +3,7 @@
 use super::power::{angle, stretch, tension, torsion, turn_rate};
 use super::pull::{Pulled, pull_angle, pull_rate, pull_turn};
 use super::{
-    Acting, LoadCotangent, contact, controller, for_each_load, give_to_parameters, give_to_states,
+    Acting, LoadCotangent, contact, controlled, for_each_load, give_to_parameters, give_to_states,
     stop,
 };
 use crate::math::Scalar;
@@ -52,8 +52,8 @@ pub struct LoadMeasure {
 /// Its value in a motion.
 pub fn value<S: Scalar>(at: &InMotion<S>, measure: LoadMeasure) -> S {
     let own = match measure.part {
-        LoadPart::EffortForce | LoadPart::EffortTorque => controller::effort(at, measure.load),
-        LoadPart::ErrorLength | LoadPart::ErrorAngle => controller::error(at, measure.load),
+        LoadPart::EffortForce | LoadPart::EffortTorque => controlled::effort(at, measure.load),
+        LoadPart::ErrorLength | LoadPart::ErrorAngle => controlled::error(at, measure.load),
         _ => None,
     };
     if let Some(value) = own {
@@ -148,10 +148,10 @@ pub fn pull_back(
     };
     match measure.part {
         LoadPart::EffortForce | LoadPart::EffortTorque => {
-            controller::pull_effort(at, measure.load, weight, &mut to);
+            controlled::pull_effort(at, measure.load, weight, &mut to);
         }
         LoadPart::ErrorLength | LoadPart::ErrorAngle => {
-            controller::pull_error(at, measure.load, weight, &mut to);
+            controlled::pull_error(at, measure.load, weight, &mut to);
         }
         _ => pull_others(at, measure, weight, out),
     }

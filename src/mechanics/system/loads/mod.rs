@@ -3,11 +3,13 @@
 //! For virtual velocities ψ, ψᵀf is the power of a load, linear in ψ. `power.rs` has the forces and
 //! `pull.rs` the transposed derivative of the power, once for each kind and for any scalar. Forces,
 //! Jacobians and pull-backs all use these two, so they agree. Stops have both in `stop.rs`, contacts in
-//! `contact.rs`, controllers in `controller.rs` with the limits of their motors in `motor.rs`, bushings in `bushing.rs`, and the law of the former is in `normal_law.rs`. Loads that are spread over the elements of a
+//! `contact.rs`, controllers in `control_law.rs` and `controller.rs` with the limits of their motors in `motor.rs`, bushings in `bushing.rs`, and the law of the former is in `normal_law.rs`. Loads that are spread over the elements of a
 //! flexible body act on its coordinates too: `distributed.rs` has all of theirs.
 
 mod bushing;
 mod contact;
+mod control_law;
+mod controlled;
 mod controller;
 mod coordinate;
 mod distributed;
