@@ -251,6 +251,7 @@ fn explain_seen(problem: &Problem, x: &[f64]) -> Explanation {
         joints: problem.joint_count(),
         loads: written.loads.len(),
         couplings: problem.couplings(&written),
+        controllers: problem.controllers(&written),
         flexible: problem.flexible_bodies(x),
         bases: motion
             .as_ref()

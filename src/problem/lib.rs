@@ -13,6 +13,7 @@ mod check;
 mod combined;
 mod composed;
 mod composing;
+mod controllers;
 mod couplings;
 mod data_file;
 mod data_text;
@@ -554,6 +555,11 @@ impl Problem {
     /// How the last motion of each coupling follows the others in an unreduced model of the problem, for messages.
     pub fn couplings(&self, model: &Model<f64>) -> Vec<String> {
         couplings::described(&self.written, model)
+    }
+
+    /// What the states of controllers cost in an unreduced model of the problem, for messages.
+    pub fn controllers(&self, model: &Model<f64>) -> Vec<String> {
+        controllers::described(model)
     }
 
     /// The flexible bodies at the design `x`: their coordinates and natural frequencies.

@@ -1,6 +1,7 @@
 //! The map from a design to a scene, analytic in the design.
 
 use super::aggregates::rho_of;
+use super::controllers::turned;
 use super::couplings;
 use super::flexible::{FlexibleBodies, HeldPlace};
 use super::loads::stopped;
@@ -84,6 +85,7 @@ pub fn with_places<S: Scalar>(
     let missed = |model: &Model<S>, own: &Relation| miss(&builder, model, own);
     builder.coupled = couplings::couple(document, &assembly, &mut model, missed);
     count_turns(document, &builder, &mut model);
+    model.add_states();
     // Later phases begin as those before them end.
     let sought = document
         .sought()
@@ -231,23 +233,25 @@ fn miss<S: Scalar>(builder: &FunctionBuilder<S>, model: &Model<S>, relation: &Re
     builder.assembly.quantity(constant) - placed
 }
 
-/// Gives torsion springs and stops of angles counters of their turns, which start as the angles of their joints do.
+/// Gives torsion springs, stops of angles and controllers counters of turns, which start as the angles of their joints do.
 fn count_turns<S: Scalar>(document: &Document, builder: &FunctionBuilder<S>, model: &mut Model<S>) {
     let numbering = Numbering::new(model);
     let (q, _) = guess(model);
     for (k, load) in document.loads.values().enumerate() {
-        let joint = match load {
-            Load::TorsionSpring(spring) => Some(&spring.joint),
+        let joints = match load {
+            Load::TorsionSpring(spring) => vec![&spring.joint],
             Load::Stop(stop) if stopped(document, stop) == Some(DegreeOfFreedom::Rotation) => {
-                stop.joint.as_ref()
+                stop.joint.iter().collect()
             }
-            _ => None,
+            Load::Controller(own) => turned(document, own),
+            _ => continue,
         };
-        if let Some(joint) = joint {
+        let angle = |joint: &String| {
             let rotation = builder.joint_angle(joint);
             let twist = rotation.angle(&numbering, &q).re();
-            model.count_turns(k, twist + rotation.first_turns(twist));
-        }
+            twist + rotation.first_turns(twist)
+        };
+        model.count_turns(k, &joints.into_iter().map(angle).collect::<Vec<f64>>());
     }
 }
 

@@ -389,7 +389,8 @@ impl Instant<f64> {
             (Instant::Load(of), _) => {
                 let motions = at.motions();
                 let here = at.in_motion(&motions);
-                measured::pull_back(&here, *of, weight, &mut out.of_states());
+                let by_time = measured::pull_back(&here, *of, weight, &mut out.of_states());
+                *out.time += by_time;
             }
             (Instant::Rotation(rotation), Instant::Rotation(own)) => {
                 rotation.pull_back((at.numbering, at.q), weight, out.y, own);

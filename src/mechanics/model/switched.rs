@@ -36,6 +36,12 @@ impl<S: Scalar> Model<S> {
                     *magnitude = magnitude.since(start);
                 }
                 LoadKind::Distributed(own) => own.magnitude = own.magnitude.since(start),
+                LoadKind::Controller(own) => {
+                    let courses = own.feedback.iter_mut().map(|own| &mut own.reference);
+                    for course in courses.chain([&mut own.feed_forward]) {
+                        *course = course.since(start);
+                    }
+                }
                 LoadKind::Spring { .. }
                 | LoadKind::TorsionSpring { .. }
                 | LoadKind::Damping { .. }
@@ -108,6 +114,7 @@ impl<S: Scalar> LoadKind<S> {
                 law.stiffness = zero;
             }
             LoadKind::Contact(own) => own.law.stiffness = zero,
+            LoadKind::Controller(own) => own.acts = false,
         }
     }
 }

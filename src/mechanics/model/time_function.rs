@@ -4,16 +4,18 @@
 //! polynomial   m(t) = c0 + c1 t + c2 t² + …
 //! harmonic     m(t) = m + A sin(2π f t + φ)
 //! table        m(t) = interpolation between (t_i, m_i), see [`super::table`]; constant outside
+//! S-curve      m(t) from one value to another within a speed and an acceleration, see [`super::s_curve`]
 //! ```
 //!
 //! Accelerations depend on the second derivative of a prescribed motion. So its tables are twice
 //! continuously differentiable ([`Smoothness::Motion`]).
 
+use super::s_curve::SCurve;
 use super::table::{
     Bracket, Interpolation, Smoothness, around, by_points, interpolate, interval, polynomial,
 };
 use crate::math::scalar::Dual;
-use crate::math::{Scalar, parameters};
+use crate::math::{Parameters, Scalar, parameters};
 use std::f64::consts::TAU;
 
 /// A function of time: a force \[N\], torque \[N m\], angle \[rad\] or displacement \[m\].
@@ -43,12 +45,15 @@ pub enum TimeFunction<S> {
         /// Continuous derivatives.
         smoothness: Smoothness,
     },
+    /// A way from one value to another, at rest before and after it.
+    SCurve(SCurve<S>),
 }
 
 parameters!(enum TimeFunction {
     Polynomial(; coefficients),
     Harmonic {; mean, amplitude, frequency, phase },
     Table { interpolation, smoothness; times, values },
+    SCurve(; curve),
 });
 
 impl<S: Scalar> TimeFunction<S> {
@@ -82,6 +87,11 @@ impl<S: Scalar> TimeFunction<S> {
                 frequency: *frequency,
                 phase: *phase + *frequency * start * TAU,
             },
+            Self::SCurve(curve) => {
+                let mut own = curve.clone();
+                own.start -= start;
+                Self::SCurve(own)
+            }
             Self::Table {
                 times,
                 values,
@@ -111,6 +121,7 @@ impl<S: Scalar> TimeFunction<S> {
                 frequency,
                 phase,
             } => harmonic([*mean, *amplitude, *frequency, *phase], time),
+            Self::SCurve(curve) => curve.derivatives(time),
             Self::Table {
                 times,
                 values,
@@ -167,6 +178,16 @@ impl TimeFunction<f64> {
                     *own += along(harmonic(moved, now));
                 }
             }
+            (Self::SCurve(curve), Self::SCurve(own)) => {
+                for (j, own) in own.all_mut().into_iter().enumerate() {
+                    let mut at = 0;
+                    let moved = curve.map(&mut |x| {
+                        at += 1;
+                        Dual::new(x, if at == j + 1 { 1.0 } else { 0.0 })
+                    });
+                    *own += along(moved.derivatives(now));
+                }
+            }
             (
                 Self::Table {
                     times,
@@ -196,7 +217,8 @@ impl TimeFunction<f64> {
     }
 }
 
-fn held<S: Scalar>(value: S) -> [S; 4] {
+/// A constant with its derivatives.
+pub(super) fn held<S: Scalar>(value: S) -> [S; 4] {
     [value, S::zero(), S::zero(), S::zero()]
 }
 
@@ -216,7 +238,6 @@ fn harmonic<S: Scalar>([mean, amplitude, frequency, phase]: [S; 4], time: S) -> 
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::math::Parameters;
     use crate::math::scalar::{COMPLEX_STEP, Complex64};
     use crate::model::table::breaks;
 
@@ -238,13 +259,24 @@ mod tests {
         }
     }
 
+    /// A way with a cruise between, or one that is too short for its speed.
+    fn s_curve(to: f64) -> TimeFunction<f64> {
+        TimeFunction::SCurve(SCurve {
+            from: 0.1,
+            to,
+            start: 0.1,
+            speed: 0.9,
+            acceleration: 3.0,
+        })
+    }
+
     const ALL: [Interpolation; 3] = [
         Interpolation::Linear,
         Interpolation::Monotone,
         Interpolation::Spline,
     ];
 
-    fn courses() -> [TimeFunction<f64>; 9] {
+    fn courses() -> [TimeFunction<f64>; 11] {
         let [linear, monotone, spline] = ALL.map(table);
         let [straight, cubic, quintic] = ALL.map(magnitude);
         [
@@ -262,6 +294,8 @@ mod tests {
             straight,
             cubic,
             quintic,
+            s_curve(1.3),
+            s_curve(-0.2),
         ]
     }
 

@@ -283,6 +283,10 @@ impl Checker<'_> {
             Instant::Penetration(of) => {
                 self.stop_of(&join(pointer, "penetration"), &of.load, false);
             }
+            Instant::Effort(of) => self.controller_of(&join(pointer, "effort"), &of.load),
+            Instant::TrackingError(of) => {
+                self.controller_of(&join(pointer, "tracking_error"), &of.load);
+            }
             Instant::Rotation(rotation) => {
                 let pointer = join(pointer, "rotation");
                 self.moving(&pointer, &rotation.body, &None);
