@@ -5,6 +5,7 @@ use crate::reference::documents::problem;
 use flexbody_driver::analysed::InCases;
 use flexbody_driver::{Simulated, Simulation, check};
 use flexbody_problem::Problem;
+use nalgebra::{DMatrix, DVector};
 use serde_json::Value;
 
 /// All functions of the whole motion, by name.
@@ -372,4 +373,52 @@ fn what_does_not_come_is_named() {
     document["events"]["free"]["when"]["time"] = json!(0.2);
     let text = failure(&document);
     assert!(text.contains("the event \"free\" is due"), "{text}");
+}
+
+/// A controller that an event stops and another one starts again: between them the disk keeps its rate and the controller its
+/// integral. Angle, rate and integral against exponentials of the matrix, and exact derivatives.
+#[test]
+fn events_stop_and_start_a_controller() {
+    let (about, [p, d, k, r], times) = (0.7, [8.0, 1.5, 6.0, 0.4], [0.5, 0.3, 0.5]);
+    let document = json!({
+        "version": 1, "name": "disk", "gravity": [3, -9.81, 1],
+        "bodies": {"disk": {"mass": 5, "inertia": {"xx": 1, "yy": 1, "zz": about}}},
+        "joints": {"axle": {"revolute": {"between": ["disk", "ground"], "at": [0, 0, 0], "axis": [0, 0, 1]}}},
+        "loads": {"servo": {"controller": {
+            "joint": "axle", "reference": r, "proportional": p, "derivative": d, "integral": k, "motor": {"lag": 0.08}}}},
+        "events": {
+            "stop": {"when": {"time": times[0]}, "off": ["servo"]},
+            "go": {"when": {"time": times[0] + times[1]}, "on": ["servo"]}
+        },
+        "simulation": {"duration": times.iter().sum::<f64>(), "tolerance": 1e-11},
+        "functions": {
+            "angle": {"final": {"angle": {"joint": "axle"}}},
+            "rate": {"final": {"angle_rate": {"joint": "axle"}}},
+            "effort": {"final": {"effort": {"load": "servo"}}}
+        },
+        "variables": {
+            "proportional": {"path": "/loads/servo/controller/proportional", "lower": 0.1, "upper": 100},
+            "stop": {"path": "/events/stop/when/time", "lower": 0.1, "upper": 0.7}
+        }
+    });
+    let problem = problem(&document);
+    let all = simulated(&problem);
+    let found = |name: &str| phases(&all).value(number(&problem, name));
+    let lag = 0.08;
+    let rows = [
+        [0.0, 1.0, 0.0, 0.0],
+        [0.0, 0.0, 0.0, 1.0 / about],
+        [-k, 0.0, 0.0, 0.0],
+        [-p / lag, -d / lag, 1.0 / lag, -1.0 / lag],
+    ];
+    let after =
+        |x: DVector<f64>, time: f64| (DMatrix::from_fn(4, 4, |i, j| rows[i][j] * time)).exp() * x;
+    let mut x = after(DVector::from_vec(vec![-r, 0.0, 0.0, 0.0]), times[0]);
+    x[0] += x[1] * times[1];
+    let x = after(x, times[2]);
+    for (name, expected) in [("angle", r + x[0]), ("rate", x[1]), ("effort", x[3])] {
+        let off = (found(name) - expected).abs();
+        assert!(off < 1e-9, "{name} {} {expected}", found(name));
+    }
+    gradients_are_exact(&problem, "controller");
 }
