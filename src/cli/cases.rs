@@ -3,14 +3,14 @@
 use super::aggregates::{add_smoothed, told};
 use super::arguments::Job;
 use super::error_table::add_errors;
-use super::{DONE, Failure, motion, print, shown, statics, tell, write_report};
+use super::{DONE, Failure, draw, motion, print, shown, statics, tell, write_report};
 use crate::driver::analysed::InCases;
 use crate::driver::ends::Ends;
 use crate::driver::modes::{ToldModes, told as told_modes};
 use crate::driver::{Simulated, Simulation};
-use crate::figures::tables::ReactionAxes;
-use crate::problem::{Case, Problem};
-use crate::report::{prepare_directory, with_space};
+use crate::figures::{self, tables, tables::ReactionAxes};
+use crate::problem::{Case, Division, Problem};
+use crate::report::{prepare_directory, with_space, write_all};
 use serde_json::{Map, Value, json};
 use std::fmt::Write;
 
@@ -43,7 +43,17 @@ pub(super) fn simulate(
         }
     }
     if let Some(directory) = &job.output {
-        for (case, at) in all.each() {
+        let phases = phases(all);
+        if !phases.is_empty() {
+            let tables = tables::of_phases(&phases, axes).into_iter();
+            let tables: Vec<_> = tables
+                .map(|(name, bytes)| (directory.join(name), bytes))
+                .collect();
+            write_all(&tables)?;
+            draw(directory, figures::of_phases(problem, &Ends::of(&found)));
+        }
+        let alone = all.each().filter(|_| phases.is_empty());
+        for (case, at) in alone {
             let own = directory.join(&case.name);
             let _held = prepare_directory(&own)?;
             match at {
@@ -73,6 +83,20 @@ pub(super) fn simulate(
     }
 }
 
+/// The phases of a motion that events divide; none of cases.
+fn phases(all: &InCases<Simulated>) -> Vec<(&Problem, &Simulation)> {
+    fn phase<'a>((case, at): (&'a Case, &'a Simulated)) -> Option<(&'a Problem, &'a Simulation)> {
+        match at {
+            Simulated::Motion(at) => Some((&case.problem, at)),
+            Simulated::Statics(_) | Simulated::Cases(_) => None,
+        }
+    }
+    match all.cases.division {
+        Division::Events => all.each().filter_map(phase).collect(),
+        Division::Cases => Vec::new(),
+    }
+}
+
 /// Each case, then the functions over cases.
 fn summary(problem: &Problem, all: &InCases<Simulated>) -> Result<String, Failure> {
     let of_case = |case: &Case, at: &Simulated| -> Result<String, Failure> {
@@ -98,7 +122,11 @@ fn summary(problem: &Problem, all: &InCases<Simulated>) -> Result<String, Failur
     let Some(width) = width else {
         return Ok(text);
     };
-    let _ = writeln!(text, "{}: {} cases", problem.name, all.cases.list.len());
+    let what = match all.cases.division {
+        Division::Cases => "cases",
+        Division::Events => "phases",
+    };
+    let _ = writeln!(text, "{}: {} {what}", problem.name, all.cases.list.len());
     for (f, name) in names() {
         let unit = with_space(Some(&problem.function_unit(f)));
         let _ = write!(text, "  {name:width$}  {:>16.9e}{unit}", all.value(f));
@@ -149,5 +177,9 @@ fn as_json(job: &Job, problem: &Problem, all: &InCases<Simulated>) -> Result<Val
         }
         functions.insert(name.clone(), own);
     }
-    Ok(json!({"name": problem.name, "cases": cases, "functions": functions}))
+    let what = match all.cases.division {
+        Division::Cases => "cases",
+        Division::Events => "phases",
+    };
+    Ok(json!({"name": problem.name, what: cases, "functions": functions}))
 }

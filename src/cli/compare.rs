@@ -34,7 +34,11 @@ pub(crate) fn plot(directory: &Path) -> Result<u8, Failure> {
             .into_iter()
             .map(named)
             .collect();
-        for (case, ends) in &ends.cases {
+        let alone = ends
+            .cases
+            .iter()
+            .filter(|(case, _)| !case.problem.is_phase());
+        for (case, ends) in alone {
             let own = figures::of_designs(&case.problem, ends).into_iter();
             all.extend(own.map(|(name, bytes)| (Path::new(&case.name).join(name), bytes)));
         }

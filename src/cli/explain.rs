@@ -3,7 +3,8 @@
 use super::arguments::Job;
 use super::{DONE, Failure, load, no_page, print};
 use crate::driver;
-use crate::problem::Problem;
+use crate::problem::{Division, Problem};
+use crate::report::Explanation;
 use serde_json::{Map, Value, json};
 
 /// Reports the reductions of a problem's scenes and the reduced scene.
@@ -19,8 +20,15 @@ pub(crate) fn explain(job: &Job, json: bool) -> Result<u8, Failure> {
         return Ok(DONE);
     };
     let mut all = Map::new();
-    for case in &cases.list {
-        let text = explained(&case.problem, json)?;
+    let phases = match cases.division {
+        Division::Cases => Vec::new(),
+        Division::Events => driver::explain_phases(&problem).map_err(Failure::numerical)?,
+    };
+    for (c, case) in cases.list.iter().enumerate() {
+        let text = match phases.get(c) {
+            Some(own) => told(own, json)? + &handed_on(&case.problem, json),
+            None => explained(&case.problem, json)?,
+        };
         match json {
             true => {
                 let own: Value = serde_json::from_str(&text).map_err(Failure::numerical)?;
@@ -30,7 +38,11 @@ pub(crate) fn explain(job: &Job, json: bool) -> Result<u8, Failure> {
         }
     }
     if json {
-        let text = serde_json::to_string_pretty(&json!({"cases": all}));
+        let what = match cases.division {
+            Division::Cases => "cases",
+            Division::Events => "phases",
+        };
+        let text = serde_json::to_string_pretty(&json!({what: all}));
         print(&(text.map_err(Failure::numerical)? + "\n"))?;
     }
     Ok(DONE)
@@ -40,7 +52,22 @@ fn explained(problem: &Problem, json: bool) -> Result<String, Failure> {
     if problem.statics.is_some() {
         return super::statics::explained(problem, json);
     }
-    let explanation = driver::explain(problem);
+    told(&driver::explain(problem), json)
+}
+
+/// What an event costs.
+fn handed_on(problem: &Problem, json: bool) -> String {
+    match problem.next_event() {
+        Some(event) if !json => format!(
+            "  event \"{event}\": {} numbers of the bodies go on to the next phase; for each function of later phases the \
+             backward march has one target more\n",
+            13 * problem.body_count() + 1
+        ),
+        _ => String::new(),
+    }
+}
+
+fn told(explanation: &Explanation, json: bool) -> Result<String, Failure> {
     match json {
         true => explanation.json().map_err(Failure::numerical),
         false => Ok(explanation.text()),

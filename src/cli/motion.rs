@@ -131,6 +131,13 @@ pub(super) fn as_json(
         "start": driver::start::notes(problem, &simulation.at.x),
         "warnings": warnings,
     });
+    if let (Some(event), Some([before, after])) = (problem.last_event(), simulation.jump(problem)) {
+        all["event"] = json!({
+            "name": event,
+            "time": simulation.begin,
+            "kinetic_energy": {"before": before, "after": after},
+        });
+    }
     if counts.products > 0 {
         all["work"]["krylov_products"] = json!(counts.products);
     }
@@ -166,6 +173,14 @@ pub(super) fn summary(
             simulation.reason
         ),
     };
+    if let (Some(event), Some([before, after])) = (problem.last_event(), simulation.jump(problem)) {
+        let _ = writeln!(
+            text,
+            "  event: \"{event}\" at t = {:.9} s; kinetic energy {before:.6e} J before, {after:.6e} J after: {:.6e} J are lost",
+            simulation.begin,
+            before - after
+        );
+    }
     if let Some(warning) = &simulation.warning {
         let _ = writeln!(text, "  warning: {warning}");
     }

@@ -20,7 +20,7 @@ pub struct Drive {
 
 /// A motion in its unit.
 macro_rules! time_functions {
-    ($course:ident, $what:literal, $unit:literal, $rate:literal, $powers:literal) => {
+    ($course:ident, $what:literal, $unit:literal, $rate:literal, $faster:literal, $powers:literal) => {
         #[doc = concat!("Function of time: ", $what, ".")]
         #[derive(Clone, Debug, Deserialize, JsonSchema)]
         #[serde(rename_all = "snake_case", deny_unknown_fields)]
@@ -61,6 +61,27 @@ macro_rules! time_functions {
                 /// Interpolation between the values, default monotone.
                 interpolation: Option<Interpolation>,
             },
+            /// A way from one value to another within a speed and an acceleration, at rest before and after it. Its jerk is
+            /// continuous.
+            SCurve {
+                /// Value before it, default 0.
+                #[serde(default = "nothing")]
+                #[schemars(extend("unit" = $unit))]
+                from: Quantity,
+                /// Value behind it, another one.
+                #[schemars(extend("unit" = $unit))]
+                to: Quantity,
+                /// Instant at which it starts, default 0.
+                #[serde(default = "nothing")]
+                #[schemars(extend("unit" = "s"))]
+                start: Quantity,
+                /// Largest speed. A short way does not reach it.
+                #[schemars(extend("unit" = $rate, "exclusiveMinimum" = 0))]
+                speed: Quantity,
+                /// Largest acceleration.
+                #[schemars(extend("unit" = $faster, "exclusiveMinimum" = 0))]
+                acceleration: Quantity,
+            },
         }
 
         impl $course {
@@ -80,14 +101,43 @@ macro_rules! time_functions {
                         values,
                         interpolation,
                     } => TimeFunction::Table(times, values, *interpolation),
+                    Self::SCurve {
+                        from,
+                        to,
+                        start,
+                        speed,
+                        acceleration,
+                    } => TimeFunction::SCurve([from, to, start, speed, acceleration]),
                 }
             }
         }
     };
 }
 
-time_functions!(Turning, "an angle", "rad", "rad/s", "rad, rad/s, rad/s², …");
-time_functions!(Sliding, "a displacement", "m", "m/s", "m, m/s, m/s², …");
+time_functions!(
+    Turning,
+    "an angle",
+    "rad",
+    "rad/s",
+    "rad/s²",
+    "rad, rad/s, rad/s², …"
+);
+time_functions!(
+    Sliding,
+    "a displacement",
+    "m",
+    "m/s",
+    "m/s²",
+    "m, m/s, m/s², …"
+);
+time_functions!(
+    Following,
+    "an angle, displacement or distance",
+    "m or rad",
+    "m/s or rad/s",
+    "m/s² or rad/s²",
+    "m, m/s, m/s², … or rad, rad/s, rad/s², …"
+);
 
 /// A time function without its unit.
 pub enum TimeFunction<'a> {
@@ -99,6 +149,8 @@ pub enum TimeFunction<'a> {
     Harmonic([&'a Quantity; 4]),
     /// Instants and values.
     Table(&'a [f64], &'a [Quantity], Option<Interpolation>),
+    /// From, to, start, speed and acceleration.
+    SCurve([&'a Quantity; 5]),
 }
 
 /// The quantity 0.

@@ -12,7 +12,7 @@ use super::statics::{
     CentreOfMass, Displacement, Frequency, LowestFrequency, MomentOfInertia, OfCase,
     ReactionMoment, StaticReaction, Stress,
 };
-use super::windows::{During, FatigueDamage, MeanAbsolute, Over, ValueAt};
+use super::windows::{During, Edge, FatigueDamage, MeanAbsolute, Over, ValueAt};
 use crate::quantity::Quantity;
 use schemars::JsonSchema;
 use serde::Deserialize;
@@ -45,6 +45,8 @@ pub enum Function {
     Clearance(Clearance),
     /// Duration of the run; with `until`, the time of the event \[s\].
     Duration,
+    /// Time at which an event of the file comes \[s\], by its name.
+    EventTime(String),
     /// Mass of all bodies, or of all structures \[kg\].
     Mass,
     /// Coordinate of the centre of mass of all structures \[m\].
@@ -126,6 +128,26 @@ impl Function {
         }
     }
 
+    /// The ends of its window, if it has one; a value at a time ends there.
+    pub fn window(&self) -> [Option<&Edge>; 2] {
+        let during = match self {
+            Self::Value(own) => return [None, Some(&own.at)],
+            Self::Ks(own) => own.during.as_ref(),
+            Self::InducedExponential(own) => own.during.as_ref(),
+            Self::MeanAbsolute(own) => own.during.as_ref(),
+            Self::FatigueDamage(own) => own.during.as_ref(),
+            Self::Integral(over)
+            | Self::Final(over)
+            | Self::Mean(over)
+            | Self::MeanSquare(over) => over.during(),
+            _ => None,
+        };
+        match during {
+            Some(During::Between(own)) => [own.from.as_ref(), own.to.as_ref()],
+            Some(During::Times(_)) | None => [None, None],
+        }
+    }
+
     /// The function, if it is one of a motion and not of structures.
     pub fn of_motion(&self) -> Option<OfMotion<'_>> {
         match self {
@@ -140,7 +162,8 @@ impl Function {
             Self::Value(own) => Some(OfMotion::Value(own)),
             Self::Misfit(own) => Some(OfMotion::Misfit(own)),
             Self::Clearance(own) => Some(OfMotion::Clearance(own)),
-            Self::Duration => Some(OfMotion::Duration),
+            // The duration of the phases until then.
+            Self::Duration | Self::EventTime(_) => Some(OfMotion::Duration),
             Self::Mass => Some(OfMotion::Mass),
             Self::Frequency(own) => Some(OfMotion::Frequency(own)),
             Self::LowestFrequency(own) => Some(OfMotion::LowestFrequency(own)),

@@ -3,8 +3,8 @@
 use super::combined::{Distance, PowerOf, Relative};
 use super::couplings::OfCoupling;
 use super::measured::{
-    AngularMomentum, JointReaction, JointSlide, LargestFibreStress, LargestSectionForce, OfSpring,
-    OfStop, SectionComponent, SectionPlace,
+    AngularMomentum, JointReaction, JointSlide, LargestFibreStress, LargestSectionForce,
+    OfController, OfSpring, OfStop, SectionComponent, SectionPlace,
 };
 use super::mechanics::Point;
 use crate::quantity::{Quantity, Vector};
@@ -92,6 +92,10 @@ pub enum Instant {
     ContactFriction(OfStop),
     /// How deep a stop or contact is entered [m or rad]; negative before it, to the nearer limit.
     Penetration(OfStop),
+    /// Force \[N\] or torque [N m] of a controller; positive where it increases its coordinate.
+    Effort(OfController),
+    /// What the coordinate of a controller lacks to its reference [m or rad].
+    TrackingError(OfController),
     /// Range of a projectile that is released at this instant \[m\].
     Range(Range),
     /// Von Mises stress by yield stress of a body of shells, aggregated over both faces of their Gauss points.

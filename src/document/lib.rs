@@ -2,9 +2,11 @@
 
 pub mod cases;
 pub mod combined;
+pub mod controllers;
 pub mod couplings;
 pub mod drives;
 pub mod elements;
+pub mod events;
 pub mod flexible;
 pub mod functions;
 pub mod instants;
@@ -29,6 +31,7 @@ pub mod windows;
 use cases::Case;
 use couplings::Coupling;
 use drives::Drive;
+use events::Event;
 use flexbody_mechanics::system::equilibrium::{KnownStarts, Sought};
 use functions::{Function, Instant, WhichFunction};
 use indexmap::IndexMap;
@@ -143,6 +146,14 @@ pub struct Document {
     pub couplings: IndexMap<String, Coupling>,
     /// Duration and accuracy of the simulation.
     pub simulation: Option<Simulation>,
+    /// Events that change the machine during its motion, by name, in the order in which they come: joints, loads and drives
+    /// go off or on, and the motion goes on.
+    #[serde(default)]
+    pub events: IndexMap<String, Event>,
+    /// The part of the motion that a problem has, if events divide it: the number of events before it.
+    #[serde(skip)]
+    #[schemars(skip)]
+    pub phase: Option<usize>,
     /// Structures of shells and beams by name, which do not move.
     #[serde(default)]
     pub structures: IndexMap<String, Structure>,

@@ -1,5 +1,6 @@
 //! Loads in a file.
 
+use super::controllers::Controller;
 use super::joints::Ends;
 use super::mechanics::Point;
 use crate::quantity::{Quantity, Vector};
@@ -7,7 +8,7 @@ use flexbody_mechanics::model;
 use schemars::JsonSchema;
 use serde::Deserialize;
 
-/// A force, torque, spring, damper, bushing, friction, drag, stop or contact.
+/// A force, torque, spring, damper, bushing, friction, drag, stop, contact or controller.
 #[derive(Clone, Debug, Deserialize, JsonSchema)]
 #[serde(rename_all = "snake_case", deny_unknown_fields)]
 pub enum Load {
@@ -40,6 +41,8 @@ pub enum Load {
     Edge(EdgeForce),
     /// A force per length on beams of a body of `elements`, in a fixed direction.
     Line(LineForce),
+    /// A controller with its motor, which makes a joint or a distance follow a reference.
+    Controller(Box<Controller>),
 }
 
 /// A force at a point of a body.
@@ -186,6 +189,7 @@ macro_rules! time_functions {
 time_functions!(ForceInTime, VaryingForce, "force", "N");
 time_functions!(TorqueInTime, VaryingTorque, "torque", "N m");
 time_functions!(PressureInTime, VaryingPressure, "pressure", "Pa");
+time_functions!(EffortInTime, VaryingEffort, "force or torque", "N or N m");
 time_functions!(LineForceInTime, VaryingLineForce, "force per length", "N/m");
 
 /// A time function without its unit.
@@ -582,6 +586,7 @@ impl Load {
             Load::Area(_) => "area",
             Load::Edge(_) => "edge",
             Load::Line(_) => "line",
+            Load::Controller(_) => "controller",
         }
     }
 }

@@ -56,6 +56,14 @@ pub struct OfStop {
     pub load: String,
 }
 
+/// A controller.
+#[derive(Clone, Debug, Deserialize, JsonSchema)]
+#[serde(deny_unknown_fields)]
+pub struct OfController {
+    /// Name of the load.
+    pub load: String,
+}
+
 /// A direction and a point.
 #[derive(Clone, Debug, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]

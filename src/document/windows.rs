@@ -89,7 +89,7 @@ pub struct FatigueDamage {
 #[derive(Clone, Debug, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 pub struct ValueAt {
-    /// The time, or the first time at which a quantity reaches a value.
+    /// The time, the first time at which a quantity reaches a value, or an event.
     pub at: Edge,
     /// The quantity.
     pub of: Instant,
@@ -115,7 +115,7 @@ pub struct WindowEnds {
     pub to: Option<Edge>,
 }
 
-/// A time, or the first time at which a quantity reaches a value.
+/// A time, the first time at which a quantity reaches a value, or an event that changes the machine.
 #[derive(Clone, Debug, Deserialize, JsonSchema)]
 #[serde(untagged)]
 pub enum Edge {
@@ -123,6 +123,26 @@ pub enum Edge {
     Time(#[schemars(extend("unit" = "s"))] Quantity),
     /// The first time at which a quantity reaches a value.
     When(Box<Reach>),
+    /// When an event comes.
+    Event(AtEvent),
+}
+
+/// An event of the file. A window ends just before it or starts just after it, and a value is that just before it.
+#[derive(Clone, Debug, Deserialize, JsonSchema)]
+#[serde(deny_unknown_fields)]
+pub struct AtEvent {
+    /// Its name.
+    pub event: String,
+}
+
+impl Edge {
+    /// The event, if it is one.
+    pub fn event(&self) -> Option<&str> {
+        match self {
+            Self::Event(own) => Some(&own.event),
+            Self::Time(_) | Self::When(_) => None,
+        }
+    }
 }
 
 /// A quantity reaches a value: give one of `reaches`, `rises_to` and `falls_to`.

@@ -7,7 +7,7 @@
 //! terms of the gradient. At an optimum the gradient may vanish, as that of a sum of squares does. So Σ |gᵢdᵢ|
 //! at the start counts as well, and of a sum over the motion the sum of the sizes of its terms.
 
-use super::analysed::{AnalysisFailure, InCases, Simulated};
+use super::analysed::{AnalysisFailure, InCases, Simulated, phases};
 use super::check::{complex_step, own_size};
 use super::composed::infinitesimal;
 use super::evaluate::{Derivative, Evaluated};
@@ -20,7 +20,7 @@ use crate::functions::Function;
 use crate::integrate::{IntegrationFailure, Settings};
 use crate::math::Complex64;
 use crate::math::scalar::COMPLEX_STEP;
-use crate::problem::Problem;
+use crate::problem::{Division, Problem};
 use crate::report::optimum::{
     CertificateCost, CertifiedDerivative, CertifiedDesign, GradientCertificate,
 };
@@ -101,6 +101,13 @@ fn of_design(
     Ok(match simulated {
         Simulated::Motion(simulation) => certified(problem, &simulation.at, along, cost)?,
         Simulated::Statics(at) => certified_statics(problem, at, along, cost)?,
+        Simulated::Cases(at) if at.cases.division == Division::Events => {
+            let (direction, tolerance, sizes) = along;
+            let all = phases::directional(problem, at, direction)?;
+            cost.gradients += 1;
+            cost.complex_runs += at.cases.list.len() as u64;
+            told(problem, all, (tolerance, sizes))
+        }
         Simulated::Cases(at) => certified_cases(problem, at, along, cost)?,
     })
 }
@@ -260,6 +267,15 @@ fn certified_statics(
     let all = statics::check::directional(problem, at, direction)?;
     cost.gradients += 1;
     cost.complex_runs += 1;
+    Ok(told(problem, all, (tolerance, sizes)))
+}
+
+/// All functions with their derivatives along a direction, computed twice, Σ |gᵢdᵢ| and the size of their terms.
+fn told(
+    problem: &Problem,
+    all: Vec<[f64; 4]>,
+    (tolerance, sizes): (f64, &mut [f64]),
+) -> CertifiedDesign {
     let mut found = CertifiedDesign::default();
     let functions = problem.function_names.iter().zip(all).zip(sizes);
     for ((name, [adjoint, complex_step, own, terms]), size) in functions {
@@ -278,7 +294,7 @@ fn certified_statics(
         }
         found.functions.insert(name.clone(), judged.recorded());
     }
-    Ok(found)
+    found
 }
 
 /// For every function: the sum of the sizes of the terms over the motion of which its derivative along a

@@ -267,7 +267,15 @@ fn size_of_instant(at: &Evaluated, instant: &Instant<f64>) -> f64 {
         Instant::Load(measure) => match (measure.part, &model.loads[measure.load].kind) {
             (LoadPart::Tension, LoadKind::Spring { stiffness, .. }) => stiffness * length,
             (LoadPart::Torque, LoadKind::TorsionSpring { stiffness, .. }) => *stiffness,
-            (LoadPart::PenetrationAngle, _) => 1.0,
+            (LoadPart::PenetrationAngle | LoadPart::ErrorAngle, _) => 1.0,
+            (LoadPart::EffortForce | LoadPart::EffortTorque, _) => {
+                let mass: f64 = model.bodies.iter().map(|body| body.mass).sum();
+                let force = mass * (model.gravity.norm() + length / (time * time));
+                match measure.part {
+                    LoadPart::EffortForce => force,
+                    _ => force * length,
+                }
+            }
             (LoadPart::NormalForce, LoadKind::JointStop { law, .. })
             | (LoadPart::NormalForce, LoadKind::DistanceStop { law, .. }) => law.stiffness * length,
             (LoadPart::NormalForce, LoadKind::Contact(own)) => own.law.stiffness * length,

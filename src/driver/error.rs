@@ -358,7 +358,11 @@ fn doubled(
 }
 
 /// The settings of a run with every step halved and twice the samples.
-fn halved(run: &Trajectory<f64>, (cells, summed): (bool, bool), limits: Limits) -> Settings {
+pub(super) fn halved(
+    run: &Trajectory<f64>,
+    (cells, summed): (bool, bool),
+    limits: Limits,
+) -> Settings {
     let instants = run.last();
     let samples = if cells {
         Samples::Quadrature(0)

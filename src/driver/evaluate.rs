@@ -13,9 +13,9 @@ use crate::integrate::{
 use crate::math::scalar::COMPLEX_STEP;
 use crate::math::soft_max::Smoothed;
 use crate::math::{Complex64, Dual, Parameters};
-use crate::model::RigidBody;
 use crate::model::flexible::FlexibleBody;
-use crate::problem::{Composition, Focus, Partials, Problem};
+use crate::model::{JointFrame, RigidBody};
+use crate::problem::{Composition, EndCotangent, Focus, Partials, Problem};
 use std::borrow::Cow;
 use std::sync::Arc;
 
@@ -38,9 +38,11 @@ pub struct Evaluated {
 /// A design with an infinitesimal change of all variables, each in its scale.
 fn along(problem: &Problem, x: &[f64]) -> Vec<Complex64> {
     let scaled = problem.variables.iter().zip(x).enumerate();
-    scaled
-        .map(|(i, (variable, &x))| Complex64::new(x, COMPLEX_STEP * variable.scale * irregular(i)))
-        .collect()
+    let moved = scaled
+        .map(|(i, (variable, &x))| Complex64::new(x, COMPLEX_STEP * variable.scale * irregular(i)));
+    // The state with which a phase begins.
+    let fixed = x.iter().skip(problem.variables.len());
+    moved.chain(fixed.map(|&x| Complex64::from(x))).collect()
 }
 
 impl Evaluated {
@@ -302,7 +304,7 @@ impl Evaluated {
                 .expect("every function is in the list")
         };
         let targets = once.iter().map(|&f| Target::Function(f)).collect();
-        let (all, counts) = self.derivatives_of(problem, targets)?;
+        let (all, counts) = self.derivatives_of(problem, targets, &[])?;
         let row = |g: usize| &all[place(&g)][..];
         let one = |&f: &usize| match self.composition.gives(f) {
             true => composed::derivatives(&self.partials(f), &row),
@@ -322,15 +324,32 @@ impl Evaluated {
         histories: Vec<WeightedHistories>,
     ) -> Result<Vec<Vec<f64>>, IntegrationFailure> {
         let targets = histories.into_iter().map(Target::Histories).collect();
-        let (all, _) = self.derivatives_of(problem, targets)?;
+        let (all, _) = self.derivatives_of(problem, targets, &[])?;
         let value = |row: Vec<Derivative>| row.into_iter().map(|d| d.value).collect();
         Ok(all.into_iter().map(value).collect())
     }
 
+    /// Exact derivatives of the functions `which` of the scene, and of sums of the state at the end, by one backward march.
+    ///
+    /// # Errors
+    /// If a step's equations are singular.
+    pub fn derivatives_to_end(
+        &self,
+        problem: &Problem,
+        which: &[usize],
+        ends: &[&EndCotangent],
+    ) -> Result<(Vec<Vec<Derivative>>, WorkCounts), IntegrationFailure> {
+        let functions = which.iter().map(|&f| Target::Function(f));
+        let of_ends = ends.iter().map(|own| Target::End(own.end.clone()));
+        self.derivatives_of(problem, functions.chain(of_ends).collect(), ends)
+    }
+
+    /// Derivatives of targets; the last of them are sums of the end, whose parts without the motion `ends` has.
     fn derivatives_of(
         &self,
         problem: &Problem,
         mut targets: Vec<Target>,
+        ends: &[&EndCotangent],
     ) -> Result<(Vec<Vec<Derivative>>, WorkCounts), IntegrationFailure> {
         let count = targets.len();
         let ends_at_event = self.scene.until.is_some() && count > 0;
@@ -338,6 +357,15 @@ impl Evaluated {
             targets.push(Target::Function(self.scene.event()));
         }
         let mut adjoint = adjoint::gradients_of(&self.scene, &self.run, &targets)?;
+        let of_ends = adjoint.gradients[count - ends.len()..].iter_mut();
+        for (gradient, end) in of_ends.zip(ends) {
+            gradient.duration += end.duration;
+            for (joint, by) in &end.frames {
+                let own = &mut gradient.model.joints[*joint];
+                own.frame_a.length += by.length;
+                own.frame_b.add(&JointFrame { length: 0.0, ..*by });
+            }
+        }
         let mut of_event: Option<Vec<Scene<f64>>> = None;
         if ends_at_event && let Some(event) = adjoint.gradients.pop() {
             adjoint.modes.pop();

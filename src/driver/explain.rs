@@ -1,5 +1,6 @@
 //! What lowering removes from a problem's scenes, and what remains.
 
+use super::analysed::{AnalysisFailure, phases};
 use super::bases;
 use super::evaluate::{Derivative, Evaluated};
 use super::integration::{Integration, looks_at_the_whole};
@@ -27,8 +28,8 @@ struct MotionExplanation {
 
 impl MotionExplanation {
     /// Simulates the start, or a first stretch that takes little time.
-    fn of(problem: &Problem, which: &[usize]) -> Result<Self, IntegrationFailure> {
-        let x = problem.start();
+    fn of(problem: &Problem, x: &[f64], which: &[usize]) -> Result<Self, IntegrationFailure> {
+        let x = x.to_vec();
         let mut scene = problem.scene(&x);
         let mut integration = Integration::new(problem, &scene, Some(which), true);
         memory::admit(&scene.model, &integration.wanted())?;
@@ -148,9 +149,9 @@ pub fn explain(problem: &Problem) -> Explanation {
         (!seen.keeps_all(model)).then_some((focused, seen))
     });
     let Some((focused, seen)) = seen else {
-        return explain_seen(problem);
+        return explain_seen(problem, &problem.start());
     };
-    let mut found = explain_seen(focused);
+    let mut found = explain_seen(focused, &focused.start());
     let unseen: Vec<String> = (model.bodies.iter().enumerate())
         .filter(|(body, _)| !seen.keeps(*body))
         .map(|(_, body)| format!("\"{}\"", body.name))
@@ -189,14 +190,29 @@ pub fn explain(problem: &Problem) -> Explanation {
     found
 }
 
+/// Explains the phases of a motion that events divide, each from the state with which it begins.
+///
+/// # Errors
+/// If a phase fails.
+pub fn explain_phases(problem: &Problem) -> Result<Vec<Explanation>, AnalysisFailure> {
+    let Some(cases) = &problem.cases else {
+        return Ok(Vec::new());
+    };
+    let of = |_: usize, own: &Problem, x: &[f64]| {
+        let at = Evaluated::new(own, x)?;
+        Ok((at, explain_seen(own, x)))
+    };
+    let found = phases::each(cases, &problem.start(), of, |(at, _)| Some(at))?;
+    Ok(found.into_iter().flatten().map(|own| own.1).collect())
+}
+
 /// Explains a problem with all its bodies simulated.
-fn explain_seen(problem: &Problem) -> Explanation {
-    let x = problem.start();
-    let written = problem.unlowered_scene(&x).model;
-    let scene = problem.scene(&x);
+fn explain_seen(problem: &Problem, x: &[f64]) -> Explanation {
+    let written = problem.unlowered_scene(x).model;
+    let scene = problem.scene(x);
     let (left_out, kept) = lowering(problem, &written, &scene.model);
     let which: Vec<usize> = (0..problem.function_names.len()).collect();
-    let motion = MotionExplanation::of(problem, &which);
+    let motion = MotionExplanation::of(problem, x, &which);
     let found = match &motion {
         Ok(motion) => motion.derivatives(problem, &which),
         Err(failure) => Some(Err(failure.clone())),
@@ -235,13 +251,14 @@ fn explain_seen(problem: &Problem) -> Explanation {
         joints: problem.joint_count(),
         loads: written.loads.len(),
         couplings: problem.couplings(&written),
-        flexible: problem.flexible_bodies(&x),
+        controllers: problem.controllers(&written),
+        flexible: problem.flexible_bodies(x),
         bases: motion
             .as_ref()
             .map_or_else(|_| Vec::new(), |motion| of_bases(problem, motion, &which)),
         left_out,
         kept,
-        start: super::start::notes(problem, &x),
+        start: super::start::notes(problem, x),
         written: size(&written, of_written),
         lowered: size(&scene.model, of_lowered),
         failure: failure.map(ToString::to_string),

@@ -13,7 +13,7 @@ use crate::integrate::{
     Chosen, Grid, IntegrationFailure, Limits, LinearSolver, Method, Samples, Settings, Spacing,
     Trajectory, choice, has_kinks, simulate, simulate_by,
 };
-use crate::problem::{Case, Problem};
+use crate::problem::{Case, Division, Problem};
 use serde::{Deserialize, Serialize};
 use std::sync::Arc;
 
@@ -205,7 +205,7 @@ impl Integration {
         let wanted = asked.map(|asked| cases.wanted(&problem.composition.of_scene(asked)));
         let one = |(c, case): (usize, &Case)| match &wanted {
             None => Some(Self::of(&case.problem, None, gradients)),
-            Some(wanted) if wanted[c].is_empty() => None,
+            Some(wanted) if wanted[c].is_empty() && cases.division == Division::Cases => None,
             Some(wanted) => Some(Self::of(&case.problem, Some(&wanted[c]), gradients)),
         };
         cases.list.iter().enumerate().map(one).collect()

@@ -58,7 +58,7 @@ pub use certificate::certify;
 pub use chaos::chaos;
 pub use check::CheckedDerivative;
 pub use evaluate::Evaluated;
-pub use explain::{explain, merged_errs};
+pub use explain::{explain, explain_phases, merged_errs};
 pub use known_evaluations::KnownEvaluations;
 pub use multi_start::multi_start;
 pub use optimise::{Optimisation, optimise, optimise_over};

@@ -11,7 +11,7 @@ use super::record::record;
 use super::resolved;
 use super::shared::Shared;
 use crate::optimiser::{self, Method, Observer, Options, Outcome, Phase, Row, SavedState, Status};
-use crate::problem::{Case, Problem};
+use crate::problem::{Case, Division, Problem};
 use crate::report::evaluations::Work;
 use crate::report::history::{Column, History, HistoryRow};
 use crate::report::optimum::Optimum;
@@ -257,6 +257,7 @@ fn doubtful(
             told.into_iter().collect()
         }
         Simulated::Statics(_) => Vec::new(),
+        Simulated::Cases(ends) if ends.cases.division == Division::Events => Vec::new(),
         Simulated::Cases(ends) => {
             let wanted = (ends.cases).wanted(&problem.composition.of_scene(which));
             let starts = match start {

@@ -20,6 +20,8 @@ pub struct Simulation {
     expanded: Option<Trajectory<f64>>,
     /// Energy, momentum and drift at every instant.
     pub observations: Vec<Observation>,
+    /// When it begins, if it is a phase of a motion that events divide; else zero \[s\].
+    pub begin: f64,
     /// Why the method was chosen.
     pub reason: String,
     /// A warning about the method for this scene, if any.
@@ -95,6 +97,7 @@ impl Simulation {
             written,
             expanded,
             observations,
+            begin: problem.begin(&at.x),
             reason: String::new(),
             warning: None,
             unlowered: false,
@@ -105,6 +108,22 @@ impl Simulation {
     /// The motion of all bodies.
     pub fn motion(&self) -> &Trajectory<f64> {
         self.expanded.as_ref().unwrap_or(&self.at.run)
+    }
+
+    /// Time of instant k, from the start of the whole motion \[s\].
+    pub fn time(&self, k: usize) -> f64 {
+        self.begin + self.motion().time(k)
+    }
+
+    /// Kinetic energy before and after the event with which a phase begins \[J\]. The joints that close take what is
+    /// missing: ½ (v⁻ − v⁺)ᵀ M (v⁻ − v⁺) if they rest.
+    pub fn jump(&self, problem: &Problem) -> Option<[f64; 2]> {
+        problem.last_event()?;
+        let before = self.at.scene.model.bodies.iter().map(|body| {
+            let spin = body.angular_velocity;
+            body.mass * body.velocity.norm_squared() + spin.dot(&(body.inertia * spin))
+        });
+        Some([0.5 * before.sum::<f64>(), self.observations[0].kinetic])
     }
 
     /// Largest |E(t) − E(0)| of the total energy \[J\].

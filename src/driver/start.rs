@@ -20,6 +20,10 @@ const NEARLY: f64 = 1e-4;
 /// Notes on the start at the design `x`, one sentence each; empty if the start is as given, or if
 /// there is none.
 pub fn notes(problem: &Problem, x: &[f64]) -> Vec<String> {
+    // It goes on after an event.
+    if problem.last_event().is_some() {
+        return Vec::new();
+    }
     match problem.without_equilibrium() {
         // Of the turning frame, where the stiffness alone does not tell.
         Some(_) if problem.is_turning() => Vec::new(),

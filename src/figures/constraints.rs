@@ -94,7 +94,7 @@ fn panel(problem: &Problem, designs: &[(&str, &Simulation)], f: usize, what: &st
         let function = &scene.functions[f];
         let shown = run.shown();
         let values = history(function, &scene.model, run).unwrap_or_default();
-        let time: Vec<f64> = shown.iter().map(|&k| run.time(k)).collect();
+        let time: Vec<f64> = shown.iter().map(|&k| design.time(k)).collect();
         let mut values: Vec<f64> = shown.iter().map(|&k| values[k]).collect();
         if is_integral(function) {
             values = growth(&time, &values, window(function, scene, run));
@@ -103,6 +103,7 @@ fn panel(problem: &Problem, designs: &[(&str, &Simulation)], f: usize, what: &st
             title: (*title).to_owned(),
             time,
             curves: vec![(what.to_owned(), values)],
+            marks: Vec::new(),
             limits: (limits.iter())
                 .map(|&value| Limit {
                     value,

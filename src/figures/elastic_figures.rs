@@ -147,6 +147,7 @@ pub(super) fn curves_of(
         time: (0..=run.last()).map(|k| run.time(k)).collect(),
         curves,
         limits: Vec::new(),
+        marks: Vec::new(),
     }
 }
 

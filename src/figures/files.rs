@@ -11,6 +11,7 @@ use super::fits::curves;
 use super::flight::release;
 use super::machine_modes;
 use super::outlines::{outline, scenery};
+use super::phases;
 use super::shells;
 use super::statics::figures as of_structures;
 use super::traces;
@@ -23,7 +24,7 @@ use crate::plots::{
     BodyMotion, EnergyRun, History as Curves, Lapse, Motion, convergence, energy, fit, histories,
     motion,
 };
-use crate::problem::{Drawing, Problem, Trace};
+use crate::problem::{Division, Drawing, Problem, Trace};
 use crate::report::History;
 
 /// Most numbers of the bodies of a design in the picture of its motion, about 1 MB: of large machines beams are drawn at fewer
@@ -57,7 +58,13 @@ pub fn of_optimisation(problem: &Problem, done: &Optimisation) -> Vec<NamedFile>
 /// Figures of the two ends of an optimisation; those of cases are [`of_designs`].
 pub fn of_ends(problem: &Problem, ends: &Ends, history: &History) -> Vec<NamedFile> {
     match (&problem.cases, &problem.statics) {
-        (Some(_), _) => drawn(vec![("convergence.svg", convergence(history))]),
+        (Some(cases), _) => {
+            let mut all = drawn(vec![("convergence.svg", convergence(history))]);
+            if cases.division == Division::Events {
+                all.extend(of_phases(problem, ends));
+            }
+            all
+        }
         (None, Some(_)) => of_structures::figures(problem, &ends.structures, Some(history)),
         (None, None) => figures(problem, &ends.motions, Some(history)),
     }
@@ -69,6 +76,31 @@ pub fn of_designs(problem: &Problem, ends: &Ends) -> Vec<NamedFile> {
         Some(_) => of_structures::figures(problem, &ends.structures, None),
         None => figures(problem, &ends.motions, None),
     }
+}
+
+/// Figures of motions that events divide, each with all of its phases.
+pub fn of_phases(problem: &Problem, ends: &Ends) -> Vec<NamedFile> {
+    let designs = phases::designs(ends);
+    let energies: Vec<EnergyRun> = (designs.iter())
+        .map(|own| phases::energy(own, energies))
+        .collect();
+    let lapses: Vec<Motion> = (designs.iter())
+        .map(|own| phases::lapse(own, |own, drawing| lapse("", own, drawing, Some(&[]), &[])))
+        .collect();
+    let mut all = Vec::new();
+    if let Some((first, simulation)) = designs.first().and_then(|own| own.phases.first()) {
+        let drawing = first.drawing(&simulation.at.x);
+        all.push(("motion.svg", motion(&lapses, &scenery(&drawing))));
+    }
+    all.push(("energy.svg", energy(&energies)));
+    let limited = phases::of_constraints(problem, &designs);
+    if !limited.is_empty() {
+        let rows = limited
+            .iter()
+            .map(|(label, curves)| (&label[..], curves.clone()));
+        all.push(("constraints.svg", histories(&rows.collect::<Vec<_>>())));
+    }
+    drawn(all)
 }
 
 /// Figures of a simulation.
@@ -175,13 +207,14 @@ fn energies(title: &str, simulation: &Simulation) -> EnergyRun {
     let run = &simulation.at.run;
     EnergyRun {
         title: title.to_string(),
-        time: (0..=run.last()).map(|k| run.time(k)).collect(),
+        time: (0..=run.last()).map(|k| simulation.time(k)).collect(),
         kinetic: simulation.observations.iter().map(|o| o.kinetic).collect(),
         potential: simulation
             .observations
             .iter()
             .map(|o| o.potential)
             .collect(),
+        marks: Vec::new(),
     }
 }
 

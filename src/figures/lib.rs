@@ -3,7 +3,7 @@
 //!
 //! | File | Content |
 //! |---|---|
-//! | [`of_simulation`], [`of_optimisation`] | the figures of a run |
+//! | [`of_simulation`], [`of_phases`], [`of_optimisation`] | the figures of a run |
 //! | [`report_page`] | the page of a run, `report.html` |
 //! | [`shell_fields`], [`statics`] | fields for ParaView, figures of structures |
 //! | [`tables`] | a motion at every instant, as comma separated values |
@@ -23,6 +23,7 @@ mod forces;
 mod machine_modes;
 mod outlines;
 pub mod page;
+mod phases;
 pub mod plots;
 pub mod report_page;
 mod shapes;
@@ -40,4 +41,4 @@ use flexbody_problem as problem;
 use flexbody_report as report;
 
 pub use error::FigureError;
-pub use files::{NAMES, NamedFile, of_designs, of_ends, of_optimisation, of_simulation};
+pub use files::{NAMES, NamedFile, of_designs, of_ends, of_optimisation, of_phases, of_simulation};

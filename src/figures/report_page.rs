@@ -238,7 +238,7 @@ fn curves(problem: &Problem, motions: &[Shown]) -> Vec<Chart> {
             let function = written.functions.get(f)?;
             let quantity = function.quantity()?;
             let values = quantity.sample(&written.model, run);
-            let time: Vec<f64> = (0..values.len()).map(|k| run.time(k)).collect();
+            let time: Vec<f64> = (0..values.len()).map(|k| simulation.time(k)).collect();
             // A limit is one of the integral.
             let grows = is_integral(function) && is_limited;
             let (values, unit) = match grows {
@@ -276,7 +276,7 @@ fn curves(problem: &Problem, motions: &[Shown]) -> Vec<Chart> {
     } in motions
     {
         let run = &simulation.at.run;
-        let times = || (0..=run.last()).map(|k| run.time(k));
+        let times = || (0..=run.last()).map(|k| simulation.time(k));
         let both = || times().zip(&simulation.observations);
         let kinetic = both().map(|(t, o)| [t, o.kinetic]);
         let potential = both().map(|(t, o)| [t, o.potential]);

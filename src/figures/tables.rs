@@ -36,6 +36,24 @@ pub fn of_simulation(
     all.into_iter().map(bytes).collect()
 }
 
+/// The same of a motion that events divide, from its phases.
+pub fn of_phases(phases: &[(&Problem, &Simulation)], axes: ReactionAxes) -> Vec<NamedFile> {
+    let mut all: Vec<NamedFile> = Vec::new();
+    for (problem, simulation) in phases {
+        let own = of_simulation(problem, simulation, axes);
+        if all.is_empty() {
+            all = own;
+            continue;
+        }
+        for ((_, bytes), (_, more)) in all.iter_mut().zip(own) {
+            // Without the heading.
+            let rows = more.iter().position(|byte| *byte == b'\n');
+            bytes.extend_from_slice(&more[rows.map_or(0, |end| end + 1)..]);
+        }
+    }
+    all
+}
+
 /// Headings of the three components of a vector.
 fn components(what: &str, unit: &str) -> [String; 3] {
     ["x", "y", "z"].map(|axis| format!("{what} {axis} [{unit}]"))
@@ -69,7 +87,7 @@ fn observations(simulation: &Simulation, axes: ReactionAxes) -> String {
     };
     let rows = shown.into_iter().zip(&reactions).map(|(k, reactions)| {
         let seen = &simulation.observations[k];
-        let mut row = vec![simulation.motion().time(k), seen.kinetic, seen.potential];
+        let mut row = vec![simulation.time(k), seen.kinetic, seen.potential];
         row.extend(seen.momentum.iter().chain(seen.angular_momentum.iter()));
         row.extend([seen.position_drift, seen.velocity_drift]);
         let vectors: Vec<Vec3<f64>> = reactions.iter().flat_map(both).collect();
@@ -109,7 +127,7 @@ fn motion(simulation: &Simulation) -> String {
     }
     let rows = run.shown().into_iter().map(|k| {
         let at = Snapshot::of(model, run, k);
-        let mut row = vec![run.time(k)];
+        let mut row = vec![simulation.time(k)];
         for &body in &bodies {
             let motion = at.motion(body);
             row.extend(motion.position.iter());
@@ -135,7 +153,7 @@ fn functions(problem: &Problem, simulation: &Simulation) -> String {
     let all = named.zip(&scene.functions);
     let event = scene.until.iter().map(|until| ("until", &until.measure));
     let mut header = vec!["time [s]".to_owned()];
-    let mut columns: Vec<Vec<f64>> = vec![(0..=run.last()).map(|k| run.time(k)).collect()];
+    let mut columns: Vec<Vec<f64>> = vec![(0..=run.last()).map(|k| simulation.time(k)).collect()];
     for (name, function) in all.chain(event) {
         let (what, unit, values) = match function {
             Function::Reduced { of, .. } => (of.describe(), of.unit(), of.sample(model, run)),

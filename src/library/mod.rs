@@ -62,7 +62,9 @@ pub fn unresolved(problem: &Problem, x: &[f64]) -> Vec<String> {
             let own = unresolved(&case.problem, x).into_iter();
             own.map(|why| case.tell(why)).collect::<Vec<_>>()
         };
-        return cases.list.iter().flat_map(of_case).collect();
+        // Derivatives of a phase are also those by the state with which it begins.
+        let alone = cases.list.iter().filter(|case| !case.problem.is_phase());
+        return alone.flat_map(of_case).collect();
     }
     if problem.statics.is_some() {
         return Vec::new();

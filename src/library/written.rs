@@ -97,7 +97,13 @@ pub(crate) fn draw_optimisation(
     done: &Optimisation,
 ) -> Vec<ReportError> {
     let mut missing = replace(directory, figures::of_optimisation(problem, done));
-    for (case, ends) in &Ends::of_optimisation(done).cases {
+    // Figures of a motion have all of its phases.
+    let ends = Ends::of_optimisation(done);
+    let alone = ends
+        .cases
+        .iter()
+        .filter(|(case, _)| !case.problem.is_phase());
+    for (case, ends) in alone {
         let drawn = figures::of_designs(&case.problem, ends);
         missing.extend(draw_case(directory, &case.name, drawn));
     }

@@ -10,7 +10,7 @@ use crate::driver::packed::PackedRun;
 use crate::driver::ranks::{OpenLog, Ranks, StartLog};
 use crate::driver::shared::Shared;
 use crate::optimiser::SavedState;
-use crate::problem::Problem;
+use crate::problem::{Division, Problem};
 use crate::report::evaluations::EvaluationRecord;
 use std::cell::RefCell;
 use std::collections::{BTreeMap, HashMap};
@@ -302,7 +302,14 @@ impl Ranks for Hub {
         earlier: &[EvaluationRecord],
     ) -> Option<Arc<Shared>> {
         let mut own = self.state.borrow_mut();
-        let cases = problem.cases.as_ref().map_or(0, |cases| cases.list.len());
+        let cases = problem
+            .cases
+            .as_ref()
+            .map_or(0, |cases| match cases.division {
+                Division::Cases => cases.list.len(),
+                // The phases of a motion follow each other.
+                Division::Events => 0,
+            });
         let ranks = self.post.ranks().min(cases);
         if ranks < 2 {
             return None;

@@ -6,6 +6,7 @@
 //! by [`Composition`](super::Composition).
 
 use super::composing::{Composing, value_in_case};
+use super::events;
 use super::fault::Faults;
 use super::finding::Finding;
 use super::overrides::Override;
@@ -32,10 +33,22 @@ pub struct Case {
     pub problem: Problem,
 }
 
+/// What divides a problem into several.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Division {
+    /// Cases: machines that move by themselves.
+    Cases,
+    /// Events: each phase of one motion begins as the one before it ends.
+    Events,
+}
+
 impl Case {
     /// What is said of it, with its name.
     pub fn tell(&self, what: impl std::fmt::Display) -> String {
-        format!("in the case \"{}\": {what}", self.name)
+        match self.problem.is_phase() {
+            true => format!("{}: {what}", self.name),
+            false => format!("in the case \"{}\": {what}", self.name),
+        }
     }
 }
 
@@ -44,6 +57,8 @@ impl Case {
 pub struct Cases {
     /// In the order of the file.
     pub list: Vec<Case>,
+    /// What they are.
+    pub division: Division,
     /// By function "FUNCTION in CASE" of the problem: the case, and the function of its problem.
     pub places: Vec<(usize, usize)>,
 }
@@ -73,13 +88,14 @@ impl Problem {
     pub fn case(&self, name: &str) -> Option<&Problem> {
         let cases = self.cases.as_ref()?;
         let own = cases.list.iter().find(|case| case.name == name)?;
-        Some(&own.problem)
+        Some(&own.problem).filter(|own| !own.is_phase())
     }
 
     /// Names of its cases; empty if it has none.
     pub fn case_names(&self) -> Vec<&str> {
         let cases = self.cases.iter().flat_map(|cases| &cases.list);
-        cases.map(|case| case.name.as_str()).collect()
+        let alone = cases.filter(|case| !case.problem.is_phase());
+        alone.map(|case| case.name.as_str()).collect()
     }
 
     /// Changes settings of the problem and of each case.
@@ -104,9 +120,17 @@ pub(super) fn load(path: &Path, overrides: &[Override]) -> Result<Problem, Fault
 /// Reads a problem from its text.
 pub(super) fn parse(written: &str, file: &str, overrides: &[Override]) -> Result<Problem, Faults> {
     let (document, source, findings) = read::document(written, file, overrides)?;
-    let of_cases = document.get("cases").is_some().then(|| source.clone());
-    let (problem, stated) = read::single(document, source, findings, (file, overrides))?;
-    match (stated, of_cases) {
+    let is_divided = ["cases", "events"]
+        .iter()
+        .any(|key| document.get(key).is_some());
+    let has_events = (document["events"].as_object()).is_some_and(|all| !all.is_empty());
+    let of_parts = is_divided.then(|| source.clone());
+    let phase = has_events.then_some(0);
+    let (problem, stated) = read::single(document, source, findings, (file, overrides), phase)?;
+    if let (true, Some(source)) = (has_events, &of_parts) {
+        return events::complete(problem, source, (file, overrides));
+    }
+    match (stated, of_parts) {
         (Some(stated), Some(source)) => complete(problem, stated, &source, (file, overrides)),
         _ => Ok(problem),
     }
@@ -228,7 +252,11 @@ fn complete(
             .fold(base.hash.clone(), |all, case| all + &case.problem.hash),
     );
     (base.statics, base.lowering) = (None, None);
-    base.cases = Some(Arc::new(Cases { list, places }));
+    base.cases = Some(Arc::new(Cases {
+        list,
+        division: Division::Cases,
+        places,
+    }));
     Ok(base)
 }
 
@@ -245,7 +273,14 @@ fn of_case(
     stated.keep(&mut document, name);
     change(&mut document, (name, case)).map_err(located)?;
     document["name"] = Value::from(value_in_case(&base.name, name));
-    let found = read::single(document, source.clone(), Vec::new(), (file, overrides))?.0;
+    let found = read::single(
+        document,
+        source.clone(),
+        Vec::new(),
+        (file, overrides),
+        None,
+    )?
+    .0;
     let names = |problem: &Problem| -> Vec<String> {
         problem
             .variables

@@ -1,10 +1,11 @@
 //! Makes the joints and drives of a model from those of a file.
 
+use super::controllers;
 use super::placement::{Assembly, GROUND, split_location};
 use crate::math::scalar::{length, unit};
 use crate::math::{Scalar, Vec3};
 use crate::model::{
-    DegreeOfFreedom, Drive, Fit, Joint, JointFrame, JointKind, Smoothness, TimeFunction,
+    DegreeOfFreedom, Drive, Fit, Joint, JointFrame, JointKind, SCurve, Smoothness, TimeFunction,
 };
 use crate::quantity::Quantity;
 use crate::schema::Document;
@@ -156,15 +157,18 @@ pub(super) fn drives<S: Scalar>(
         });
         turn.into_iter().chain(slide)
     };
-    document
+    let mut all: Vec<Drive<S>> = document
         .drives
         .values()
         .filter(of)
         .flat_map(parts)
-        .collect()
+        .collect();
+    all.extend(controllers::held_at_rest(document, assembly, name));
+    all
 }
 
-fn course<S: Scalar>(assembly: &Assembly<S>, written: Written) -> TimeFunction<S> {
+/// A motion in time.
+pub(super) fn course<S: Scalar>(assembly: &Assembly<S>, written: Written) -> TimeFunction<S> {
     let get = |quantity: &Quantity| assembly.quantity(quantity);
     match written {
         Written::Rate(rate) => TimeFunction::Polynomial(vec![S::zero(), get(rate)]),
@@ -177,6 +181,13 @@ fn course<S: Scalar>(assembly: &Assembly<S>, written: Written) -> TimeFunction<S
             frequency: get(frequency),
             phase: get(phase),
         },
+        Written::SCurve([from, to, start, speed, acceleration]) => TimeFunction::SCurve(SCurve {
+            from: get(from),
+            to: get(to),
+            start: get(start),
+            speed: get(speed),
+            acceleration: get(acceleration),
+        }),
         Written::Table(times, values, interpolation) => TimeFunction::Table {
             interpolation: Interpolation::of(interpolation),
             smoothness: Smoothness::Motion,

@@ -13,6 +13,7 @@ mod check;
 mod combined;
 mod composed;
 mod composing;
+mod controllers;
 mod couplings;
 mod data_file;
 mod data_text;
@@ -20,6 +21,7 @@ mod derived;
 mod drawing;
 mod elastic_drawing;
 pub mod elements;
+mod events;
 mod expansion;
 mod expression;
 mod expression_units;
@@ -47,6 +49,7 @@ mod origins;
 mod overrides;
 mod parameter_units;
 mod parts;
+mod phases;
 mod placement;
 pub mod pointer;
 mod points;
@@ -74,11 +77,11 @@ mod windows;
 
 use flexbody_document::{self as schema, prepared, quantity};
 use flexbody_mathematics::math;
-use flexbody_mechanics::{functions, integrate, lower, model, structures, system};
+use flexbody_mechanics::{adjoint, functions, integrate, lower, model, structures, system};
 use flexbody_optimiser as optimiser;
 
 pub use aggregates::OpenAggregate;
-pub use cases::{Case, Cases};
+pub use cases::{Case, Cases, Division};
 pub use composed::{Composed, Composition, Partials};
 use derived::Derived;
 pub use drawing::{BarrierLine, Drawing, Outline};
@@ -89,6 +92,7 @@ pub use focus::Focus;
 pub use instances::SceneScalar;
 pub use memory::available as available_memory;
 pub use overrides::{Override, OverrideError};
+pub use phases::EndCotangent;
 pub use schema::{schema, schema_with_expressions};
 pub use statics::{Asked, MeasuredFunction, Moved, StaticScene, Statics, Workspace};
 pub use text::{visible, visible_lines};
@@ -264,13 +268,14 @@ impl Problem {
         bodies.into_iter().any(|body| body.elements.is_some())
     }
 
-    /// Whether the end of the motion depends on the design: its duration is a variable, or it ends at an
+    /// Whether the end of the motion depends on the design: its duration is a variable, or it begins or ends at an
     /// event.
     pub fn end_moves(&self) -> bool {
         let simulation = self.written.simulation.as_ref();
-        simulation.is_some_and(|simulation| {
-            simulation.duration.variable.is_some() || simulation.until.is_some()
-        })
+        self.is_phase()
+            || simulation.is_some_and(|simulation| {
+                simulation.duration.variable.is_some() || simulation.until.is_some()
+            })
     }
 
     /// Name of the problem and of its results.
@@ -446,7 +451,7 @@ impl Problem {
 
     /// The design `x`, then the numbers that expressions give.
     fn extended<'x, S: Scalar>(&self, x: &'x [S]) -> Cow<'x, [S]> {
-        self.derived.extend(x)
+        self.derived.extend(self.split(x).0)
     }
 
     /// The design in the file, then the numbers that expressions give.
@@ -456,7 +461,7 @@ impl Problem {
 
     /// The first expression without a finite value at the design `x`, in words.
     pub fn undefined_expression(&self, x: &[f64]) -> Option<String> {
-        self.derived.undefined(x)
+        self.derived.undefined(self.split(x).0)
     }
 
     /// The model whose bodies are as placed.
@@ -550,6 +555,11 @@ impl Problem {
     /// How the last motion of each coupling follows the others in an unreduced model of the problem, for messages.
     pub fn couplings(&self, model: &Model<f64>) -> Vec<String> {
         couplings::described(&self.written, model)
+    }
+
+    /// What the states of controllers cost in an unreduced model of the problem, for messages.
+    pub fn controllers(&self, model: &Model<f64>) -> Vec<String> {
+        controllers::described(model)
     }
 
     /// The flexible bodies at the design `x`: their coordinates and natural frequencies.

@@ -1,5 +1,6 @@
 //! Makes the loads of a model from those of a file.
 
+use super::controllers::controller;
 use super::elements::prepared;
 use super::placement::{Assembly, GROUND};
 use super::spread_loads::dead_shares;
@@ -166,6 +167,7 @@ fn kind<S: Scalar>(
             );
             distributed(&load.body, spread, load.magnitude.parts())
         }
+        WrittenLoad::Controller(own) => LoadKind::Controller(controller(document, assembly, own)),
         WrittenLoad::Line(load) => {
             let spread = dead(
                 document,
@@ -179,14 +181,18 @@ fn kind<S: Scalar>(
 }
 
 /// Both ends of a load: body A is not ground.
-struct BothEnds<S> {
-    body_a: usize,
-    body_b: Option<usize>,
-    point_a: Vec3<S>,
-    point_b: Vec3<S>,
+pub(super) struct BothEnds<S> {
+    pub body_a: usize,
+    pub body_b: Option<usize>,
+    pub point_a: Vec3<S>,
+    pub point_b: Vec3<S>,
 }
 
-fn ends<S: Scalar>(assembly: &Assembly<S>, between: &[String; 2], at: &Ends) -> BothEnds<S> {
+pub(super) fn ends<S: Scalar>(
+    assembly: &Assembly<S>,
+    between: &[String; 2],
+    at: &Ends,
+) -> BothEnds<S> {
     let sides = match between[0] == GROUND {
         true => [1, 0],
         false => [0, 1],
@@ -308,7 +314,8 @@ fn axes(written: WrittenAxes) -> Axes {
     }
 }
 
-fn course<S: Scalar>(assembly: &Assembly<S>, written: Written) -> TimeFunction<S> {
+/// A magnitude in time.
+pub(super) fn course<S: Scalar>(assembly: &Assembly<S>, written: Written) -> TimeFunction<S> {
     let get = |quantity: &crate::quantity::Quantity| assembly.quantity(quantity);
     match written {
         Written::Constant(value) => TimeFunction::constant(get(value)),
@@ -327,7 +334,7 @@ fn course<S: Scalar>(assembly: &Assembly<S>, written: Written) -> TimeFunction<S
     }
 }
 
-fn joint<'a>(document: &'a Document, name: &str) -> (usize, &'a Joint) {
+pub(super) fn joint<'a>(document: &'a Document, name: &str) -> (usize, &'a Joint) {
     let (index, _, joint) = document
         .joints
         .get_full(name)
@@ -337,7 +344,7 @@ fn joint<'a>(document: &'a Document, name: &str) -> (usize, &'a Joint) {
 
 /// The degree of freedom of a joint on which a load acts: the named one, or the first; `None` if
 /// the joint has none.
-fn dof(joint: &Joint, motion: Option<Motion>) -> Option<DegreeOfFreedom> {
+pub(super) fn dof(joint: &Joint, motion: Option<Motion>) -> Option<DegreeOfFreedom> {
     match motion {
         Some(motion) => Some(named(motion)),
         None => joint.kind().degrees_of_freedom().first().copied(),

@@ -380,6 +380,7 @@ pub(super) fn beside(problem: &Problem) -> Option<Finding> {
                 }
                 // Elements are no point masses.
                 Load::Pressure(_) | Load::Area(_) | Load::Edge(_) | Load::Line(_) => None,
+                Load::Controller(own) => ends(&pointer, own.between.as_ref()?, own.at.as_ref()?),
                 Load::Force(_)
                 | Load::Torque(_)
                 | Load::TorsionSpring(_)

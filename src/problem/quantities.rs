@@ -1,5 +1,6 @@
 //! The functions of a scene from those of a problem file.
 
+use super::controllers::{controlled, is_held};
 use super::couplings::{Followed, observed};
 use super::flexible::{FlexibleBodies, Sections, station, stations};
 use super::loads::stopped;
@@ -16,7 +17,7 @@ use crate::math::rotation::{self, compose, conjugate};
 use crate::math::scalar::{lift3, unit};
 use crate::math::{Scalar, Vec3};
 use crate::model::{Axes, DegreeOfFreedom};
-use crate::quantity::vector;
+use crate::quantity::{Quantity as Number, vector};
 use crate::schema::Document;
 use crate::schema::couplings::OfCoupling;
 use crate::schema::functions::{self as written, CountedFrom, Function as Written, OfMotion};
@@ -257,6 +258,11 @@ impl<S: Scalar> FunctionBuilder<'_, S> {
                 true => self.of_load(&of.load, LoadPart::PenetrationAngle),
                 false => self.of_load(&of.load, LoadPart::Penetration),
             },
+            I::Effort(of) => self.effort(&of.load),
+            I::TrackingError(of) => match self.controls_angle(&of.load) {
+                true => self.of_load(&of.load, LoadPart::ErrorAngle),
+                false => self.of_load(&of.load, LoadPart::ErrorLength),
+            },
             I::Energy(part) => Instant::Energy(match part {
                 Energy::Kinetic => EnergyPart::Kinetic,
                 Energy::Potential => EnergyPart::Potential,
@@ -367,6 +373,39 @@ impl<S: Scalar> FunctionBuilder<'_, S> {
             return false;
         };
         stopped(self.document, stop) == Some(DegreeOfFreedom::Rotation)
+    }
+
+    /// The effort of a controller; at rest that of the drive by which its integral holds the joint.
+    fn effort(&self, name: &str) -> Instant<S> {
+        let turns = self.controls_angle(name);
+        if let Some(Load::Controller(own)) = self.document.loads.get(name)
+            && is_held(self.document, own)
+            && let Some(joint) = &own.joint
+        {
+            let of = JointReaction {
+                joint: joint.clone(),
+                on: None,
+                axes: Some(ReactionAxes::Joint),
+                direction: [0.0, 0.0, 1.0].map(Number::fixed),
+            };
+            let part = match turns {
+                true => WrenchPart::Moment,
+                false => WrenchPart::Force,
+            };
+            return self.reaction(&of, part);
+        }
+        match turns {
+            true => self.of_load(name, LoadPart::EffortTorque),
+            false => self.of_load(name, LoadPart::EffortForce),
+        }
+    }
+
+    /// Whether a load is the controller of an angle.
+    fn controls_angle(&self, name: &str) -> bool {
+        let Some(Load::Controller(own)) = self.document.loads.get(name) else {
+            return false;
+        };
+        controlled(self.document, own) == Some(DegreeOfFreedom::Rotation)
     }
 
     fn reaction(&self, of: &JointReaction, part: WrenchPart) -> Instant<S> {

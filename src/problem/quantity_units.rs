@@ -5,6 +5,7 @@ use super::finding::Finding;
 use super::pointer::{join, keys};
 use super::variables::Variable;
 use crate::functions::{Edge, Function, Scene};
+use crate::model::controller::Coordinate;
 use crate::model::{DegreeOfFreedom, LoadKind};
 
 /// The unit of a value of a quantity in the schema.
@@ -24,6 +25,15 @@ pub(super) fn name_units_of_joints(variables: &mut [Variable], scene: &Scene<f64
             let name = keys.get(1).filter(|_| keys[0] == "loads")?;
             let load = scene.model.loads.iter().find(|load| load.name == *name)?;
             match load.kind {
+                LoadKind::Controller(ref own) => {
+                    let other = (keys.get(3).filter(|key| *key == "feedback"))
+                        .and_then(|_| keys.get(4)?.parse::<usize>().ok());
+                    let of = own.feedback.get(other.map_or(0, |other| 1 + other))?;
+                    Some(match of.coordinate {
+                        Coordinate::Joint { dof, .. } => dof == DegreeOfFreedom::Translation,
+                        Coordinate::Distance { .. } => true,
+                    })
+                }
                 LoadKind::DistanceStop { .. } => Some(true),
                 LoadKind::Damping { dof, .. }
                 | LoadKind::Friction { dof, .. }

@@ -86,12 +86,14 @@ pub(super) fn document(
     Ok((document, source, findings))
 }
 
-/// The problem of a document without its cases, and what it states of these, if it has some. `findings` are known already.
+/// The problem of a document without its cases, and what it states of these, if it has some. `findings` are known already;
+/// of a motion with events it is that of a phase.
 pub(super) fn single(
     mut document: Value,
     mut source: Source,
     mut findings: Vec<Finding>,
     (file, overrides): (&str, &[Override]),
+    phase: Option<usize>,
 ) -> Result<(Problem, Option<Stated>), Faults> {
     findings.extend(text::faults(&document));
     let mut original = None;
@@ -145,6 +147,7 @@ pub(super) fn single(
             return faults(findings);
         }
     };
+    written.phase = phase;
     // Other files are read only if the document has no faults.
     let content = match structure.findings.is_empty() {
         true => {
@@ -201,6 +204,7 @@ pub(super) fn single(
     let order = placement_order(&written).expect("a checked document has no circle of places");
     match deserialise(&sound) {
         Ok(mut bound) => {
+            bound.phase = phase;
             if let Some(stated) = &stated {
                 stated.prepare(&mut bound);
                 stated.strip(&mut bound);
@@ -385,7 +389,10 @@ pub(super) fn lowering(problem: &Problem) -> Lowering {
         .collect();
     let real = |x: &[f64]| problem.unlowered_scene(x);
     let dual = |x: &[Dual]| problem.unlowered_scene(x);
-    Lowering::find(&real, &dual, &variables)
+    match problem.is_phase() {
+        true => Lowering::of_plane(&real, &dual, &variables),
+        false => Lowering::find(&real, &dual, &variables),
+    }
 }
 
 /// Deserialises a document.

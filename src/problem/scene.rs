@@ -1,10 +1,12 @@
 //! The map from a design to a scene, analytic in the design.
 
 use super::aggregates::rho_of;
+use super::controllers::turned;
 use super::couplings;
 use super::flexible::{FlexibleBodies, HeldPlace};
 use super::loads::stopped;
 use super::mass::mass_properties;
+use super::phases;
 use super::placement::Assembly;
 use super::quantities::FunctionBuilder;
 use super::start_rates;
@@ -17,6 +19,7 @@ use crate::model::{DegreeOfFreedom, Mobility, Model, RigidBody};
 use crate::quantity::{Vector, vector};
 use crate::schema::Document;
 use crate::schema::couplings::{Relation, Term};
+use crate::schema::events::When;
 use crate::schema::flexible::Start;
 use crate::schema::functions::OfMotion;
 use crate::schema::loads::Load;
@@ -56,6 +59,9 @@ pub fn with_places<S: Scalar>(
         loads: super::loads::loads(document, &assembly),
         flexible: Vec::new(),
     };
+    if !document.events.is_empty() {
+        phases::open_at_start(document, &mut model);
+    }
     let numbers = FlexibleBodies::weigh(document, &mut model, x);
     let mut unstarted = start(document, &assembly, &mut model, x).err();
     let mut flexible = FlexibleBodies::add(document, &assembly, &mut model, numbers, x);
@@ -79,7 +85,12 @@ pub fn with_places<S: Scalar>(
     let missed = |model: &Model<S>, own: &Relation| miss(&builder, model, own);
     builder.coupled = couplings::couple(document, &assembly, &mut model, missed);
     count_turns(document, &builder, &mut model);
-    if let (Some(sought), None) = (document.sought(), &unstarted) {
+    model.add_states();
+    // Later phases begin as those before them end.
+    let sought = document
+        .sought()
+        .filter(|_| document.phase.is_none_or(|phase| phase == 0));
+    if let (Some(sought), None) = (sought, &unstarted) {
         let request = Request {
             sought,
             turning: turning(document, x),
@@ -105,16 +116,19 @@ pub fn with_places<S: Scalar>(
         .collect();
     let simulation = document.simulation.as_ref();
     let simulation = simulation.expect("a scene has a simulation, which is checked before");
-    let mut until = simulation
-        .until
-        .as_ref()
+    let (until, duration) = match document.next_event().map(|(_, event)| &event.when) {
+        None => (simulation.until.as_ref(), &simulation.duration),
+        Some(When::Reaches(until)) => (Some(&**until), &simulation.duration),
+        Some(When::At(own)) => (None, &own.time),
+    };
+    let mut until = until
         .map(|until| TerminalEvent::new(builder.quantity(&until.measure), until.reaches.get(x)));
     flexible.move_functions(&mut model, &mut functions, &mut until);
     let apart = flexible.apart.take();
     let unstarted = unstarted.or(apart.map(|body| AssemblyFailure::MovedApart { body }));
     let scene = Scene {
         model,
-        duration: simulation.duration.get(x),
+        duration: duration.get(x),
         until,
         functions,
         unstarted,
@@ -219,23 +233,25 @@ fn miss<S: Scalar>(builder: &FunctionBuilder<S>, model: &Model<S>, relation: &Re
     builder.assembly.quantity(constant) - placed
 }
 
-/// Gives torsion springs and stops of angles counters of their turns, which start as the angles of their joints do.
+/// Gives torsion springs, stops of angles and controllers counters of turns, which start as the angles of their joints do.
 fn count_turns<S: Scalar>(document: &Document, builder: &FunctionBuilder<S>, model: &mut Model<S>) {
     let numbering = Numbering::new(model);
     let (q, _) = guess(model);
     for (k, load) in document.loads.values().enumerate() {
-        let joint = match load {
-            Load::TorsionSpring(spring) => Some(&spring.joint),
+        let joints = match load {
+            Load::TorsionSpring(spring) => vec![&spring.joint],
             Load::Stop(stop) if stopped(document, stop) == Some(DegreeOfFreedom::Rotation) => {
-                stop.joint.as_ref()
+                stop.joint.iter().collect()
             }
-            _ => None,
+            Load::Controller(own) => turned(document, own),
+            _ => continue,
         };
-        if let Some(joint) = joint {
+        let angle = |joint: &String| {
             let rotation = builder.joint_angle(joint);
             let twist = rotation.angle(&numbering, &q).re();
-            model.count_turns(k, twist + rotation.first_turns(twist));
-        }
+            twist + rotation.first_turns(twist)
+        };
+        model.count_turns(k, &joints.into_iter().map(angle).collect::<Vec<f64>>());
     }
 }
 

@@ -16,7 +16,7 @@ impl<S: Scalar> FunctionBuilder<'_, S> {
     ) -> Function<S> {
         Function::Reduced {
             of: self.quantity(of),
-            during: during.map(|during| self.window(during)),
+            during: during.and_then(|during| self.window(during)),
             reduction,
         }
     }
@@ -37,38 +37,48 @@ impl<S: Scalar> FunctionBuilder<'_, S> {
                 operation,
                 of: vec![self.quantity(of)],
             },
-            during: during.map(|during| self.window(during)),
+            during: during.and_then(|during| self.window(during)),
             reduction: Reduction::Mean,
         }
     }
 
     /// The value at the end of a window that ends at the time.
     pub(super) fn value_at(&self, value: &ValueAt) -> Function<S> {
+        let during = || Window {
+            from: Edge::Start,
+            to: self.edge(&value.at),
+        };
         Function::Reduced {
             of: self.quantity(&value.of),
-            during: Some(Window {
-                from: Edge::Start,
-                to: self.edge(&value.at),
-            }),
+            // It ends a phase of the motion.
+            during: value.at.event().is_none().then(during),
             reduction: Reduction::Final,
         }
     }
 
-    fn window(&self, during: &During) -> Window<S> {
-        match during {
+    /// A window; `None` if events are its ends: then it has whole phases of the motion.
+    fn window(&self, during: &During) -> Option<Window<S>> {
+        Some(match during {
             During::Times([from, to]) => Window {
                 from: Edge::At(from.get(self.x)),
                 to: Edge::At(to.get(self.x)),
             },
-            During::Between(own) => Window {
-                from: (own.from.as_ref()).map_or(Edge::Start, |edge| self.edge(edge)),
-                to: (own.to.as_ref()).map_or(Edge::End, |edge| self.edge(edge)),
-            },
-        }
+            During::Between(own) => {
+                let ends = [&own.from, &own.to].into_iter().flatten();
+                if ends.clone().all(|end| end.event().is_some()) {
+                    return None;
+                }
+                Window {
+                    from: (own.from.as_ref()).map_or(Edge::Start, |edge| self.edge(edge)),
+                    to: (own.to.as_ref()).map_or(Edge::End, |edge| self.edge(edge)),
+                }
+            }
+        })
     }
 
     fn edge(&self, edge: &WrittenEdge) -> Edge<S> {
         match edge {
+            WrittenEdge::Event(_) => Edge::Start,
             WrittenEdge::Time(time) => Edge::At(time.get(self.x)),
             WrittenEdge::When(reach) => {
                 let (value, rises) = (reach.values().into_iter().next())

@@ -23,6 +23,9 @@ pub struct Explanation {
     /// The couplings: how the last motion of each follows the others.
     #[serde(skip_serializing_if = "Vec::is_empty")]
     pub couplings: Vec<String>,
+    /// The controllers: what their states cost.
+    #[serde(skip_serializing_if = "Vec::is_empty")]
+    pub controllers: Vec<String>,
     /// The flexible bodies: their coordinates and natural frequencies.
     #[serde(skip_serializing_if = "Vec::is_empty")]
     pub flexible: Vec<String>,
@@ -162,6 +165,7 @@ impl Explanation {
         );
         for (title, lines) in [
             ("couplings", &self.couplings),
+            ("controllers", &self.controllers),
             ("flexible bodies", &self.flexible),
             (RICHER, &self.bases),
             ("left out", &self.left_out),

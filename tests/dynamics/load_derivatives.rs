@@ -12,6 +12,7 @@ use flexbody_mathematics::math::scalar::COMPLEX_STEP;
 use flexbody_mathematics::math::{Complex64, Parameters, Scalar};
 use flexbody_mechanics::integrate::implicit::ggl::{Equations, StepState};
 use flexbody_mechanics::model::Interpolation;
+use flexbody_mechanics::model::controller::{Controller, Coordinate, Feedback, Limits, Weight};
 use flexbody_mechanics::model::{
     Axes, Contact, DegreeOfFreedom, JointKind, Load, LoadKind, Model, NormalLaw, Smoothness,
     Surface, TimeFunction,
@@ -125,6 +126,66 @@ fn kinds(body_b: Option<usize>, numbers: &mut Numbers) -> Vec<(JointKind, LoadKi
     }
     all.extend(stops(body_b, numbers));
     all.extend(contacts(body_b, numbers));
+    all.extend(controllers(body_b, numbers));
+    all
+}
+
+/// Controllers without states, which have bodies of their own: with and without each limit, of a joint and a distance.
+fn controllers(body_b: Option<usize>, numbers: &mut Numbers) -> Vec<(JointKind, LoadKind<f64>)> {
+    use JointKind::{Prismatic, Revolute, Spherical};
+    let joint = |dof| Coordinate::Joint {
+        joint: 0,
+        dof,
+        counter: None,
+    };
+    let mut all = Vec::new();
+    for limited in [false, true] {
+        for kind in [Revolute, Prismatic, Spherical] {
+            let distance = Coordinate::Distance {
+                body_a: 1,
+                body_b,
+                point_a: numbers.vector(),
+                point_b: numbers.vector(),
+            };
+            let (coordinate, other) = match kind {
+                Revolute => (joint(DegreeOfFreedom::Rotation), distance),
+                Prismatic => (joint(DegreeOfFreedom::Translation), distance),
+                _ => (distance.clone(), distance),
+            };
+            let weights = match kind {
+                Spherical => Vec::new(),
+                _ => vec![Weight {
+                    body: 0,
+                    point: numbers.vector(),
+                    mass: 0.7,
+                }],
+            };
+            let feedback = |coordinate, reference, proportional| Feedback {
+                coordinate,
+                reference,
+                proportional,
+                derivative: 0.4,
+            };
+            let own = Controller {
+                acts: true,
+                feedback: vec![
+                    feedback(coordinate, harmonic(), 0.9),
+                    feedback(other, table(), 0.3),
+                ],
+                integral: None,
+                feed_forward: harmonic(),
+                weights,
+                limits: Limits {
+                    ratio: 1.4,
+                    effort: limited.then_some(1.6),
+                    line: limited.then_some([2.5, 3.0]),
+                    power: limited.then_some(2.0),
+                },
+                lag: None,
+            };
+            all.push((kind, LoadKind::Controller(own)));
+        }
+    }
     all
 }
 

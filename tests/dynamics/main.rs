@@ -47,6 +47,7 @@ mod massless;
 mod methods_match_references;
 mod newton_krylov;
 mod node_kinematics;
+mod phases;
 mod planar_joints;
 mod reaction_functions;
 mod reactions_carry_weight;

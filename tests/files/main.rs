@@ -16,6 +16,7 @@ mod buckling;
 mod cases;
 mod circles;
 mod committed_problems;
+mod controllers;
 mod damped_modes;
 mod distributed_loads;
 pub mod element_parts;

@@ -355,6 +355,7 @@ fn swing(title: &str, drift: f64) -> EnergyRun {
             .map(|t| 1e4 * (1.0 - (3.0 * t).cos()) + drift * t)
             .collect(),
         potential: time.iter().map(|t| 1e4 * (3.0 * t).cos() - 2e4).collect(),
+        marks: Vec::new(),
         time,
     }
 }
@@ -392,6 +393,7 @@ fn energy_needs_complete_runs_and_takes_exact_ones() {
         time: vec![0.0, 1.0],
         kinetic: vec![0.0, 0.0],
         potential: vec![0.0, 0.0],
+        marks: Vec::new(),
     };
     assert_inside(&energy(std::slice::from_ref(&still)).expect("is valid"));
     let mut short = still;

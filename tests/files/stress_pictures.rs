@@ -197,6 +197,7 @@ fn curves_of_one_colour_have_other_dashes() {
             time: vec![0.0, 1.0],
             curves: (0..count).map(curve).collect(),
             limits,
+            marks: Vec::new(),
         };
         histories(&[("y [m]", vec![design])]).expect("is drawn")
     };

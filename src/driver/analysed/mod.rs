@@ -11,7 +11,7 @@ use crate::functions::{Bound, Function, Reduction};
 use crate::integrate::{IntegrationFailure, WorkCounts};
 use crate::integration::{Integration, Refresh};
 use crate::math::soft_max::Smoothed;
-use crate::problem::{Asked, Problem};
+use crate::problem::{Asked, Division, Problem};
 use crate::report::optimum::{Aggregate, Integration as IntegrationRecord, Lies};
 use crate::report::with_space;
 use crate::shared::Elsewhere;
@@ -20,6 +20,7 @@ use crate::statics::{self, StaticDesign, StaticsFailure};
 use crate::structures::functions::{self, Peak};
 use crate::{CheckedDerivative, composed, error, not_finite, resolved, start};
 pub use cases::InCases;
+pub(crate) use cases::phases;
 
 /// A design that was analysed.
 pub enum Analysed {
@@ -47,6 +48,22 @@ pub enum AnalysisFailure {
     InCase {
         /// Its name.
         case: String,
+        /// Why.
+        failure: Box<AnalysisFailure>,
+    },
+    /// A phase of a motion with events.
+    #[error("{phase}: {failure}")]
+    InPhase {
+        /// Its name.
+        phase: String,
+        /// Why.
+        failure: Box<AnalysisFailure>,
+    },
+    /// An event of a motion.
+    #[error("the event \"{event}\" does not come: {failure}")]
+    NoEvent {
+        /// Its name.
+        event: String,
         /// Why.
         failure: Box<AnalysisFailure>,
     },
@@ -504,7 +521,10 @@ impl Simulated {
 /// If the analysis fails.
 pub fn check(problem: &Problem, x: &[f64]) -> Result<Vec<CheckedDerivative>, AnalysisFailure> {
     if let Some(cases) = &problem.cases {
-        return check_cases::check((problem, cases), x);
+        return match cases.division {
+            Division::Cases => check_cases::check((problem, cases), x),
+            Division::Events => cases::phases::check((problem, cases), x),
+        };
     }
     Ok(match Simulated::of_statics(problem, x)? {
         Some(at) => statics::check::check(problem, &at)?,
@@ -526,7 +546,12 @@ pub fn place(cases: &[String], peak: &Peak) -> String {
 /// Notes for the user on the start at the design `x`, one sentence each.
 pub(crate) fn notes_of_start(problem: &Problem, x: &[f64]) -> Vec<String> {
     if let Some(cases) = &problem.cases {
-        let notes = cases.list.iter().flat_map(|case| {
+        // Later phases do not start at the start.
+        let starting = match cases.division {
+            Division::Cases => &cases.list[..],
+            Division::Events => &cases.list[..1],
+        };
+        let notes = starting.iter().flat_map(|case| {
             let own = notes_of_start(&case.problem, x).into_iter();
             own.map(|note| case.tell(note))
         });

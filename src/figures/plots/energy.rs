@@ -17,6 +17,8 @@ pub struct EnergyRun {
     pub kinetic: Vec<f64>,
     /// Potential energy \[J\].
     pub potential: Vec<f64>,
+    /// Times of events, drawn as lines from below to above \[s\].
+    pub marks: Vec<f64>,
 }
 
 /// Kinetic, potential and total energy against time and, below, the drift of the total from its
@@ -104,6 +106,8 @@ pub fn energy(runs: &[EnergyRun]) -> Result<String, FigureError> {
         drift.draw(&mut canvas, true, i == 0);
         let middle = (column(i) + width / 2.0, top - 12.0);
         canvas.title(middle, &run.title, Anchor::Centre);
+        energies.mark(&mut canvas, &run.marks);
+        drift.mark(&mut canvas, &run.marks);
         let curves = [&run.kinetic, &run.potential, &totals[i]];
         for (values, (color, dashed)) in curves.into_iter().zip(STYLES) {
             draw(&mut canvas, &energies, &run.time, values, color, dashed);

@@ -18,6 +18,8 @@ pub struct History {
     pub curves: Vec<(String, Vec<f64>)>,
     /// Limits on them.
     pub limits: Vec<Limit>,
+    /// Times of events, drawn as lines from below to above \[s\].
+    pub marks: Vec<f64>,
 }
 
 /// A limit, drawn as a line across the panel.
@@ -145,6 +147,7 @@ fn entries(design: &History, rows: usize) -> Vec<(Key, String)> {
 }
 
 fn draw(canvas: &mut Canvas, panel: &Panel, design: &History) {
+    panel.mark(canvas, &design.marks);
     let ends = [panel.x.low, panel.x.high];
     for (k, limit) in design.limits.iter().enumerate() {
         let (color, pattern) = look_of_limit(k);

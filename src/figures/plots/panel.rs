@@ -76,6 +76,14 @@ impl Panel {
         }
     }
 
+    /// Marks events at these places of the x axis.
+    pub fn mark(&self, canvas: &mut Canvas, marks: &[f64]) {
+        for &x in marks {
+            let line = [self.y.low, self.y.high].map(|y| self.pixel(x, y));
+            canvas.dashes(&line, INK, 1.0);
+        }
+    }
+
     /// The parts of a curve that lie within the frame. Values that are not finite interrupt it;
     /// on a logarithmic axis, values below its floor are drawn on the floor.
     pub fn within(&self, points: impl Iterator<Item = (f64, f64)>) -> Vec<Vec<Pixel>> {

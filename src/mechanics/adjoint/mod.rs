@@ -30,6 +30,17 @@ pub enum Target {
     Function(usize),
     /// Σ w_k g(t_k) of histories.
     Histories(WeightedHistories),
+    /// Σ w q(T) + Σ u v(T) of the state at the end.
+    End(WeightedEnd),
+}
+
+/// Weights of the coordinates at the end of a run: the cotangent of its last state.
+#[derive(Clone, Debug, Default)]
+pub struct WeightedEnd {
+    /// Of the positions, seven for each body.
+    pub q: Vec<f64>,
+    /// Of the velocities, six for each body.
+    pub v: Vec<f64>,
 }
 
 /// Σ_f Σ_k w_fk g_f(t_k) + Σ_k u_k t_k over the instants t_k of a run, with the quantities g_f behind

@@ -1,8 +1,8 @@
 //! One target during the backward march: its cotangents at the samples and at the present state,
 //! and its derivatives in the parameters so far.
 
-use super::Target;
 use super::compensated::Compensated;
+use super::{Target, WeightedEnd};
 use crate::functions::linearised::Linearised;
 use crate::functions::snapshot::{Snapshot, SnapshotCotangent};
 use crate::functions::{Reactions, RowCotangent, Rows, Scene};
@@ -25,6 +25,8 @@ struct Term<'a> {
 /// One target during the backward march.
 pub(super) struct Sensitivity<'a> {
     terms: Vec<Term<'a>>,
+    /// Weights of the state at the end, if they are the target.
+    end: Option<WeightedEnd>,
     /// Derivatives in the parameters of the scene so far.
     pub cot: Scene<f64>,
     /// Derivatives in the parameters of the model through vibrations, besides those in `cot`.
@@ -69,9 +71,15 @@ impl<'a> Sensitivity<'a> {
                 let by_time = times.map(|(weight, &at)| weight * run.grid.rate(at)).sum();
                 (terms.collect(), by_time)
             }
+            Target::End(_) => (Vec::new(), 0.0),
+        };
+        let end = match target {
+            Target::End(own) => Some(own.clone()),
+            Target::Function(_) | Target::Histories(_) => None,
         };
         Self {
             terms,
+            end,
             cot: scene.zero_cotangent(),
             modes: Vec::new(),
             by_duration,
@@ -81,21 +89,26 @@ impl<'a> Sensitivity<'a> {
         }
     }
 
-    /// Whether the target depends on the states of sample k.
-    pub fn depends_on(&self, k: usize) -> bool {
+    /// Whether the target depends on the states of sample `k` of `run`.
+    pub fn depends_on(&self, run: &Trajectory<f64>, k: usize) -> bool {
         self.terms.iter().any(|term| term.linearised.depends_on(k))
+            || (self.end.is_some() && k == run.last())
     }
 
     /// Sets `sample` to the partial derivatives of the target at sample k; false if there are
     /// none.
     pub fn linearise(&mut self, scene: &Scene<f64>, run: &Trajectory<f64>, k: usize) -> bool {
-        if !self.depends_on(k) {
+        if !self.depends_on(run, k) {
             return false;
         }
         for part in &mut self.sample {
             part.fill(0.0);
         }
         let [y, v, a] = &mut self.sample;
+        if let Some(end) = &self.end {
+            bodies::tangent_of_cotangent(&run.numbering, run.q(k), &end.q, y);
+            v.copy_from_slice(&end.v);
+        }
         let mut by_time = 0.0;
         for term in (self.terms.iter_mut()).filter(|term| term.linearised.depends_on(k)) {
             let (model, own) = self.cot.model_and_function(term.function);

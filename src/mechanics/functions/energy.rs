@@ -9,16 +9,24 @@ use crate::system::{flexible, loads};
 /// Linear momentum of the model in a snapshot, ground axes \[kg m/s\].
 pub(super) fn momentum<S: Scalar>(at: &Snapshot<S>) -> Vec3<S> {
     let motions = at.motions();
-    let bodies = at.model.bodies.iter().zip(&motions);
+    let states = at.model.states();
+    let bodies = at.model.bodies.iter().zip(&motions).enumerate();
+    let bodies = bodies.filter(|(i, _)| !states.contains(i));
     let own = flexible::held(at.model, &motions).momentum;
-    bodies.fold(own, |sum, (body, motion)| sum + motion.velocity * body.mass)
+    bodies.fold(own, |sum, (_, (body, motion))| {
+        sum + motion.velocity * body.mass
+    })
 }
 
 /// Energy of the model in a snapshot \[J\].
 pub fn energy<S: Scalar>(at: &Snapshot<S>, part: EnergyPart) -> S {
     let mut sum = S::zero();
     let motions = at.motions();
-    for (body, motion) in at.model.bodies.iter().zip(&motions) {
+    let states = at.model.states();
+    for (i, (body, motion)) in at.model.bodies.iter().zip(&motions).enumerate() {
+        if states.contains(&i) {
+            continue;
+        }
         if part != EnergyPart::Potential {
             let linear = motion.velocity.dot(&motion.velocity) * body.mass;
             let angular = motion.omega.dot(&(body.inertia * motion.omega));
@@ -41,7 +49,11 @@ pub fn energy<S: Scalar>(at: &Snapshot<S>, part: EnergyPart) -> S {
 /// Adds the derivative of `along` · [`momentum`] to the cotangents of the snapshot.
 pub(super) fn pull_momentum(at: &Snapshot<f64>, along: &Vec3<f64>, out: &mut SnapshotCotangent) {
     let motions = at.motions();
+    let states = at.model.states();
     for (i, (body, motion)) in at.model.bodies.iter().zip(&motions).enumerate() {
+        if states.contains(&i) {
+            continue;
+        }
         let o = at.numbering.velocity(i);
         add6(&mut out.v[o..], &(along * body.mass), &Vec3::zeros());
         out.model.bodies[i].mass += along.dot(&motion.velocity);
@@ -59,7 +71,11 @@ pub(super) fn pull_energy(
 ) {
     let gravity = at.model.gravity;
     let motions = at.motions();
+    let states = at.model.states();
     for (i, (body, motion)) in at.model.bodies.iter().zip(&motions).enumerate() {
+        if states.contains(&i) {
+            continue;
+        }
         let o = at.numbering.velocity(i);
         let own = &mut out.model.bodies[i];
         if part != EnergyPart::Potential {

@@ -231,6 +231,12 @@ impl<S: Scalar> Function<S> {
         all
     }
 
+    /// The angles at t = 0 of the rotations of these quantities, by which whole turns count.
+    pub fn first_angles_mut(&mut self) -> impl Iterator<Item = &mut Option<f64>> {
+        let all = self.instants_mut().into_iter();
+        all.filter_map(|own| Some(&mut own.watched_rotation_mut()?.first))
+    }
+
     /// One of them, by its number.
     pub(super) fn instant_mut(&mut self, which: usize) -> Option<&mut Instant<S>> {
         let mut left = which;

@@ -296,10 +296,13 @@ impl<S: Scalar> Instant<S> {
             },
             Instant::Slide(_) => "m",
             Instant::Load(measure) => match measure.part {
-                LoadPart::Length | LoadPart::Penetration => "m",
-                LoadPart::PenetrationAngle => "rad",
-                LoadPart::Tension | LoadPart::NormalForce | LoadPart::Friction => "N",
-                LoadPart::Torque | LoadPart::NormalTorque => "N m",
+                LoadPart::Length | LoadPart::Penetration | LoadPart::ErrorLength => "m",
+                LoadPart::PenetrationAngle | LoadPart::ErrorAngle => "rad",
+                LoadPart::Tension
+                | LoadPart::NormalForce
+                | LoadPart::Friction
+                | LoadPart::EffortForce => "N",
+                LoadPart::Torque | LoadPart::NormalTorque | LoadPart::EffortTorque => "N m",
             },
             Instant::Rotation(_) => "rad",
         }
@@ -365,6 +368,8 @@ impl<S: Scalar> Instant<S> {
                 LoadPart::NormalForce => "contact force",
                 LoadPart::NormalTorque => "contact torque",
                 LoadPart::Friction => "friction",
+                LoadPart::EffortForce | LoadPart::EffortTorque => "effort",
+                LoadPart::ErrorLength | LoadPart::ErrorAngle => "tracking error",
             },
             Instant::Rotation(_) => "rotation",
             Instant::Range { .. } => "range",

@@ -38,6 +38,17 @@ impl<S: Scalar> Instant<S> {
         }
     }
 
+    /// The rotation of [`Instant::watched_rotation`], to be changed.
+    pub fn watched_rotation_mut(&mut self) -> Option<&mut Rotation<S>> {
+        match self {
+            Instant::Rotation(rotation) => Some(rotation),
+            Instant::Range {
+                gate: Some(gate), ..
+            } => Some(&mut gate.rotation),
+            _ => None,
+        }
+    }
+
     /// Value in a snapshot, and without aggregation over points: their largest value. See [`Instant::value`].
     pub fn value_and_largest(&self, at: &Snapshot<S>, turns: f64) -> (S, S) {
         match self {
@@ -378,7 +389,8 @@ impl Instant<f64> {
             (Instant::Load(of), _) => {
                 let motions = at.motions();
                 let here = at.in_motion(&motions);
-                measured::pull_back(&here, *of, weight, &mut out.of_states());
+                let by_time = measured::pull_back(&here, *of, weight, &mut out.of_states());
+                *out.time += by_time;
             }
             (Instant::Rotation(rotation), Instant::Rotation(own)) => {
                 rotation.pull_back((at.numbering, at.q), weight, out.y, own);

@@ -239,6 +239,7 @@ fn vibration(model: &Model<f64>, load: &LoadKind<f64>) -> Option<(f64, f64)> {
         }
         LoadKind::Force { .. }
         | LoadKind::Distributed(_)
+        | LoadKind::Controller(_)
         | LoadKind::Torque { .. }
         | LoadKind::Damping { .. }
         | LoadKind::BallDamping { .. }

@@ -71,7 +71,9 @@ impl Stock {
             springs: loads::potential(model, motions).re(),
             ..Self::default()
         };
-        for (body, motion) in model.bodies.iter().zip(motions) {
+        let states = model.states();
+        let bodies = model.bodies.iter().zip(motions).enumerate();
+        for (_, (body, motion)) in bodies.filter(|(i, _)| !states.contains(i)) {
             own.kinetic += kinetic(body, motion);
             own.weights.push(weight(model, body, motion));
         }
@@ -105,7 +107,10 @@ fn elastic<S: Scalar>(model: &Model<S>, motions: &[BodyMotion<S>]) -> f64 {
 /// Σ (½ m U² + ½ tr J Ω²) over the rigid bodies.
 fn at_speed<S: Scalar>(model: &Model<S>, scale: &Scale) -> f64 {
     let [speed, spin] = scale.floor;
-    let bodies = model.bodies.iter().map(|body| {
+    let states = model.states();
+    let bodies = model.bodies.iter().enumerate();
+    let bodies = bodies.filter(|(i, _)| !states.contains(i));
+    let bodies = bodies.map(|(_, body)| {
         let turning = body.inertia.trace().re() * spin * spin;
         0.5 * (body.mass.re() * speed * speed + turning)
     });
@@ -155,8 +160,10 @@ impl Supply {
         let (mut now, mut weighs) = (0.0, 0.0);
         let mut size = 0.0;
         let mut fell = 0.0;
-        let bodies = model.bodies.iter().zip(motions).zip(&start.weights);
-        for ((body, motion), then) in bodies {
+        let states = model.states();
+        let bodies = model.bodies.iter().zip(motions).enumerate();
+        let bodies = bodies.filter(|(i, _)| !states.contains(i));
+        for ((_, (body, motion)), then) in bodies.zip(&start.weights) {
             now += kinetic(body, motion);
             let weight = weight(model, body, motion);
             weighs += weight - then;
@@ -267,6 +274,7 @@ impl Ledger {
             LoadKind::Contact(own) => stored(&own.law, scale.length),
             LoadKind::Force { .. }
             | LoadKind::Distributed(_)
+            | LoadKind::Controller(_)
             | LoadKind::Torque { .. }
             | LoadKind::Damping { .. }
             | LoadKind::BallDamping { .. }

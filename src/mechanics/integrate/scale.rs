@@ -27,7 +27,7 @@ pub struct Scale {
 pub struct Elastic {
     /// By flexible body.
     displacements: Vec<MeanSquare>,
-    /// By body: whether it carries coordinates of a flexible body or a coupling; empty if none does.
+    /// By body: whether it carries coordinates of a flexible body, a coupling or a controller; empty if none does.
     carries: Vec<bool>,
     /// Number of components that count, of positions and velocities.
     components: [usize; 2],
@@ -40,11 +40,12 @@ impl Elastic {
     fn of<S: Scalar>(model: &Model<S>) -> Self {
         let displacements = MeanSquare::all(model);
         let mut carries = Vec::new();
-        if !displacements.is_empty() || model.is_coupled() {
+        let coordinates = model.coordinates();
+        if !displacements.is_empty() || !coordinates.is_empty() {
             carries.resize(model.bodies.len(), false);
         }
         // The bodies of coupled joints count themselves.
-        for body in model.coordinates() {
+        for body in coordinates {
             carries[body] = true;
         }
         for body in displacements.iter().flat_map(MeanSquare::carriers) {

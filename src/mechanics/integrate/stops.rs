@@ -3,6 +3,7 @@
 use super::parts::distinct;
 use super::settings::Method;
 use crate::math::Scalar;
+use crate::model::controller::Controller;
 use crate::model::table::{breaks, continuous};
 use crate::model::{Model, TimeFunction};
 
@@ -16,12 +17,20 @@ where
 {
     let magnitudes = model.loads.iter().filter_map(|load| load.kind.course());
     let drives = model.joints.iter().flat_map(|joint| &joint.drives);
-    magnitudes.chain(drives.map(|drive| &drive.course))
+    let controllers = model.controllers().flat_map(Controller::courses);
+    magnitudes
+        .chain(controllers)
+        .chain(drives.map(|drive| &drive.course))
 }
 
 /// Whether loads or drives have kinks at some time.
 pub fn has_kinks<S: Scalar>(model: &Model<S>) -> bool {
-    courses(model).any(|function| matches!(function, TimeFunction::Table { .. }))
+    courses(model).any(|function| {
+        matches!(
+            function,
+            TimeFunction::Table { .. } | TimeFunction::SCurve(_)
+        )
+    })
 }
 
 /// Time of a stage at the fraction `c` of a step of size h from `start`. Among loads or drives with kinks, steps end at
@@ -38,7 +47,9 @@ pub fn stage_time<S: Scalar>((start, h): (S, S), c: f64, kinks: bool) -> S {
 /// Largest width of a step that harmonic loads and drives allow, as a fraction of the duration.
 pub fn widest<S: Scalar>(model: &Model<S>, duration: f64) -> f64 {
     courses(model).fold(1.0, |widest: f64, function| match function {
-        TimeFunction::Polynomial(_) | TimeFunction::Table { .. } => widest,
+        TimeFunction::Polynomial(_) | TimeFunction::Table { .. } | TimeFunction::SCurve(_) => {
+            widest
+        }
         TimeFunction::Harmonic { frequency, .. } => {
             let period = 1.0 / frequency.re().abs();
             widest.min(PART_OF_PERIOD * period / duration)
@@ -53,6 +64,12 @@ pub fn widest<S: Scalar>(model: &Model<S>, duration: f64) -> f64 {
 pub fn kinks<S: Scalar>(model: &Model<S>, duration: f64, method: Method) -> Vec<f64> {
     let mut all = Vec::new();
     for function in courses(model) {
+        // It has three continuous derivatives, but its ends must not be missed.
+        if let TimeFunction::SCurve(curve) = function
+            && method.is_adaptive()
+        {
+            all.extend(curve.breaks().map(|at| at / duration));
+        }
         let TimeFunction::Table {
             times,
             interpolation,

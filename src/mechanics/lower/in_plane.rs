@@ -6,6 +6,7 @@ use super::fixed::is_void;
 use super::planar::{Plane, Turned, points, used};
 use crate::math::scalar::{along, lift3};
 use crate::math::{Scalar, Vec3};
+use crate::model::controller::Coordinate;
 use crate::model::{Axes, DegreeOfFreedom, Form, JointKind, LoadKind, Model};
 
 /// The largest angular velocity of the bodies \[rad/s\], by value or by a `change` of the variable.
@@ -323,6 +324,28 @@ impl Plane {
                 // Flexible bodies that carry it, and stiffnesses, have no plane but by chance, which is not looked for.
                 LoadKind::Distributed(_) | LoadKind::Bushing { .. } => {
                     examiner.zero(S::one(), 1.0, what)
+                }
+                LoadKind::Controller(own) => {
+                    for own in &own.feedback {
+                        match &own.coordinate {
+                            Coordinate::Joint {
+                                joint,
+                                dof: DegreeOfFreedom::Rotation,
+                                ..
+                            } => {
+                                let joint = &model.joints[*joint];
+                                let n = turned.normals[joint.body_a];
+                                let e = &joint.frame_a.axes[2];
+                                examiner.vanishes((e - n * n.dot(e)).as_slice(), 1.0, what);
+                            }
+                            Coordinate::Joint {
+                                dof: DegreeOfFreedom::Translation,
+                                ..
+                            } => {}
+                            // It is not looked for.
+                            Coordinate::Distance { .. } => examiner.zero(S::one(), 1.0, what),
+                        }
+                    }
                 }
                 LoadKind::Spring { .. }
                 | LoadKind::Drag { .. }

@@ -88,7 +88,8 @@ impl Lowering {
         if shakes(&designs.start) {
             return Self::none();
         }
-        if !designs.start.model.flexible.is_empty() || designs.start.model.is_coupled() {
+        let model = &designs.start.model;
+        if !model.flexible.is_empty() || model.is_coupled() || model.is_controlled() {
             return Self::of_flexible(&designs);
         }
         let (welded, mut kept) = Welded::find(&designs);
@@ -124,6 +125,20 @@ impl Lowering {
         found
     }
 
+    /// The plane of the motion alone: all bodies keep their numbers and all of their states, with which another scene
+    /// may begin.
+    pub fn of_plane(
+        real: &dyn Fn(&[f64]) -> Scene<f64>,
+        dual: &dyn Fn(&[Dual]) -> Scene<Dual>,
+        variables: &[Range],
+    ) -> Self {
+        let designs = Designs::new(real, dual, variables);
+        match shakes(&designs.start) {
+            true => Self::none(),
+            false => Self::of_plane_and_points(Plane::find(&designs), (Vec::new(), Vec::new())),
+        }
+    }
+
     /// No reduction, as a function looks at vibrations of the whole machine.
     fn none() -> Self {
         let what = "a function looks at vibrations of the whole machine in all directions";
@@ -134,7 +149,7 @@ impl Lowering {
         Self::of_plane_and_points(Err(plane), (Vec::new(), Vec::new()))
     }
 
-    /// The reductions of scenes with flexible bodies or couplings: a plane, or else the rotation of bodies that
+    /// The reductions of scenes with flexible bodies, couplings or controllers: a plane, or else the rotation of bodies that
     /// are points. The other reductions assume rigid bodies whose joints alone hold them.
     fn of_flexible(designs: &Designs) -> Self {
         let model = &designs.start.model;

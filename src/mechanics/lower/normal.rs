@@ -159,6 +159,7 @@ fn vectors(model: &Model<f64>) -> (Vec<Vec3<f64>>, Vec<Vec3<f64>>) {
             | LoadKind::Bushing { .. }
             | LoadKind::Friction { .. }
             | LoadKind::JointStop { .. }
+            | LoadKind::Controller(_)
             | LoadKind::Distributed(_) => {}
         }
     }

@@ -342,6 +342,7 @@ pub(super) fn points<S: Scalar>(kind: &LoadKind<S>) -> [Option<(Option<usize>, V
         | LoadKind::Bushing { .. }
         | LoadKind::Friction { .. }
         | LoadKind::JointStop { .. }
+        | LoadKind::Controller(_)
         | LoadKind::Distributed(_) => [None, None],
     }
 }

@@ -9,6 +9,7 @@ use super::examine::{ConditionChecker, Verdict};
 use super::reactions;
 use crate::functions::{Function, Gate, Instant, Release, Rotation, Scene};
 use crate::math::{Scalar, Vec3};
+use crate::model::controller::Coordinate;
 use crate::model::{Axes, JointKind, LoadKind};
 
 /// Largest lever arm that counts as zero, relative to the characteristic length and [`ROUND_OFF`].
@@ -116,6 +117,20 @@ pub(super) fn holds<S: Scalar>(
             | LoadKind::JointStop { joint, .. } => {
                 let joint = &model.joints[*joint];
                 if is(joint.body_a) || joint.body_b.is_some_and(is) {
+                    vanishes(None, &turns);
+                }
+            }
+            LoadKind::Controller(own) => {
+                let turned = own.feedback.iter().any(|own| match &own.coordinate {
+                    Coordinate::Joint { joint, .. } => {
+                        let joint = &model.joints[*joint];
+                        is(joint.body_a) || joint.body_b.is_some_and(is)
+                    }
+                    Coordinate::Distance { body_a, body_b, .. } => {
+                        is(*body_a) || body_b.is_some_and(is)
+                    }
+                });
+                if turned || own.weights.iter().any(|own| is(own.body)) {
                     vanishes(None, &turns);
                 }
             }

@@ -76,8 +76,10 @@ impl Seen {
                 seen[body] = true;
             }
         }
-        // The duration depends on no body, but a scene needs one. No joint joins carriers, and a coupling joins its joints.
-        if !seen.contains(&true) || !model.flexible.is_empty() || model.is_coupled() {
+        // The duration depends on no body, but a scene needs one. No joint joins carriers, and couplings and controllers join
+        // several joints.
+        let joins = !model.flexible.is_empty() || model.is_coupled() || model.is_controlled();
+        if !seen.contains(&true) || joins {
             seen.fill(true);
         }
         let all = 0..model.bodies.len();
@@ -192,6 +194,7 @@ fn leave_out<S: Scalar>(model: &mut Model<S>, number: &[Option<usize>]) -> [Vec<
             | LoadKind::Torque { body, .. }
             | LoadKind::Drag { body, .. } => new(body),
             LoadKind::Distributed(load) => new(&mut load.body),
+            LoadKind::Controller(_) => unreachable!("a scene with controllers is kept whole"),
             LoadKind::Spring { body_a, body_b, .. }
             | LoadKind::DistanceStop { body_a, body_b, .. } => {
                 new(body_a);

@@ -149,6 +149,7 @@ impl Welded {
                     | LoadKind::Friction { .. }
                     | LoadKind::Drag { .. }
                     | LoadKind::JointStop { .. }
+                    | LoadKind::Controller(_)
                     | LoadKind::Distributed(_) => continue,
                 };
                 if links(pair) {
@@ -287,7 +288,7 @@ fn drives_reach<S: Scalar>(joint: &Joint<S>) -> f64 {
             frequency,
             ..
         } => std::f64::consts::TAU * (amplitude.re() * frequency.re()).abs(),
-        TimeFunction::Polynomial(_) | TimeFunction::Table { .. } => 0.0,
+        TimeFunction::Polynomial(_) | TimeFunction::Table { .. } | TimeFunction::SCurve(_) => 0.0,
     });
     rates.fold(0.0, f64::max)
 }

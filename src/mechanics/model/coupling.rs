@@ -40,16 +40,17 @@ impl<S: Scalar> Model<S> {
         self.joints.iter().any(Joint::is_coupled)
     }
 
-    /// Whether a body carries the coordinate of a coupling.
+    /// Whether a body carries the coordinate of a coupling, or the state of a controller.
     pub fn is_coordinate(&self, body: usize) -> bool {
         self.coordinates().contains(&body)
     }
 
-    /// The bodies that carry coordinates of couplings, which follow each other; empty without.
+    /// The bodies that carry coordinates of couplings and states of controllers, with counters between them; empty without.
     pub fn coordinates(&self) -> Range<usize> {
         let coupled = self.joints.iter().filter(|joint| joint.is_coupled());
         let modes = coupled.filter_map(|joint| joint.modes.as_ref());
         let all = modes.flat_map(|own| &own.places).map(|own| own.0);
+        let all = all.chain(self.states());
         let ends = all.fold(None, |ends: Option<(usize, usize)>, body| match ends {
             None => Some((body, body)),
             Some((first, last)) => Some((first.min(body), last.max(body))),

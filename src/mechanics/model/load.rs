@@ -19,10 +19,11 @@
 //! ```
 //!
 //! and by the opposite on body B, so momentum is conserved. N(δ, δ̇) is the [`NormalLaw`] of a stop at a lower (l) or upper (u) limit. Contacts, and loads that are spread over the elements of a flexible body,
-//! have files of their own ([`super::contact`], [`super::distributed`]). Forces and their derivatives are in `system::loads`.
+//! have files of their own ([`super::contact`], [`super::distributed`]), as have controllers ([`super::controller`]). Forces and their derivatives are in `system::loads`.
 
 use super::axes::Axes;
 use super::contact::Contact;
+use super::controller::{Controller, Coordinate};
 use super::distributed::DistributedLoad;
 use super::drive::DegreeOfFreedom;
 use super::joint::Joint;
@@ -182,6 +183,8 @@ pub enum LoadKind<S> {
     Contact(Contact<S>),
     /// A pressure or a dead load on the elements of a flexible body.
     Distributed(DistributedLoad<S>),
+    /// A controller of a joint or a distance.
+    Controller(Controller<S>),
 }
 
 parameters!(struct Load { name; kind });
@@ -200,10 +203,11 @@ parameters!(enum LoadKind {
     DistanceStop { body_a, body_b; point_a, point_b, limits, law },
     Contact(; contact),
     Distributed(; load),
+    Controller(; controller),
 });
 
 impl<S: Scalar> LoadKind<S> {
-    /// The time function of the load, if it has one.
+    /// The time function of the load, if it has one. Those of a controller are its own.
     pub fn course(&self) -> Option<&TimeFunction<S>> {
         match self {
             LoadKind::Force { magnitude, .. } | LoadKind::Torque { magnitude, .. } => {
@@ -219,6 +223,7 @@ impl<S: Scalar> LoadKind<S> {
             | LoadKind::Drag { .. }
             | LoadKind::JointStop { .. }
             | LoadKind::DistanceStop { .. }
+            | LoadKind::Controller(_)
             | LoadKind::Contact(_) => None,
         }
     }
@@ -234,6 +239,10 @@ impl<S> LoadKind<S> {
             | LoadKind::Bushing { joint, .. }
             | LoadKind::Friction { joint, .. }
             | LoadKind::JointStop { joint, .. } => Some(*joint),
+            LoadKind::Controller(own) => match own.feedback[0].coordinate {
+                Coordinate::Joint { joint, .. } => Some(joint),
+                Coordinate::Distance { .. } => None,
+            },
             LoadKind::Force { .. }
             | LoadKind::Torque { .. }
             | LoadKind::Spring { .. }
@@ -244,7 +253,7 @@ impl<S> LoadKind<S> {
         }
     }
 
-    /// The bodies that the load acts on.
+    /// The bodies that the load acts on, without states of controllers.
     pub fn bodies(&self, joints: &[Joint<S>]) -> [Option<usize>; 2] {
         match self {
             LoadKind::Force { body, .. }
@@ -254,6 +263,13 @@ impl<S> LoadKind<S> {
             LoadKind::Spring { body_a, body_b, .. }
             | LoadKind::DistanceStop { body_a, body_b, .. } => [Some(*body_a), *body_b],
             LoadKind::Contact(own) => [Some(own.body_a), own.body_b],
+            LoadKind::Controller(own) => match &own.feedback[0].coordinate {
+                Coordinate::Joint { joint, .. } => {
+                    let joint = &joints[*joint];
+                    [Some(joint.body_a), joint.body_b]
+                }
+                Coordinate::Distance { body_a, body_b, .. } => [Some(*body_a), *body_b],
+            },
             LoadKind::TorsionSpring { joint, .. }
             | LoadKind::Damping { joint, .. }
             | LoadKind::BallDamping { joint, .. }
@@ -266,7 +282,7 @@ impl<S> LoadKind<S> {
         }
     }
 
-    /// The body that counts the turns of its joint, if one does.
+    /// The body that counts the turns of its joint, if one does. A controller may have several.
     pub fn counter(&self) -> Option<usize> {
         match self {
             LoadKind::TorsionSpring { counter, .. } | LoadKind::JointStop { counter, .. } => {
@@ -282,6 +298,7 @@ impl<S> LoadKind<S> {
             | LoadKind::Drag { .. }
             | LoadKind::DistanceStop { .. }
             | LoadKind::Contact(_)
+            | LoadKind::Controller(_)
             | LoadKind::Distributed(_) => None,
         }
     }

@@ -6,6 +6,7 @@
 
 pub mod axes;
 pub mod contact;
+pub mod controller;
 pub mod coupling;
 pub mod distributed;
 pub mod drive;
@@ -18,8 +19,10 @@ pub mod mobility;
 pub mod normal_law;
 pub mod reduced;
 pub mod rigid_body;
+pub mod s_curve;
 pub mod shapes;
 pub mod shell_kind;
+mod switched;
 pub mod table;
 pub mod time_function;
 
@@ -34,6 +37,7 @@ pub use load::{Load, LoadKind};
 pub use mobility::Mobility;
 pub use normal_law::NormalLaw;
 pub use rigid_body::RigidBody;
+pub use s_curve::SCurve;
 pub use table::{Interpolation, Smoothness};
 pub use time_function::TimeFunction;
 
@@ -45,7 +49,7 @@ pub struct Model<S> {
     /// Gravitational acceleration in ground axes \[m/s²\].
     pub gravity: Vec3<S>,
     /// Bodies in the order of the problem file, then those without mass that flexible bodies, couplings, torsion springs and
-    /// stops need.
+    /// stops need, then the states of controllers.
     pub bodies: Vec<RigidBody<S>>,
     /// Joints in the order of the problem file, then the attachments of flexible bodies and the coupled motions.
     pub joints: Vec<Joint<S>>,
@@ -63,7 +67,10 @@ impl<S: Scalar> Model<S> {
         let feeds = |load: &Load<S>| {
             matches!(
                 load.kind,
-                LoadKind::Force { .. } | LoadKind::Torque { .. } | LoadKind::Distributed(_)
+                LoadKind::Force { .. }
+                    | LoadKind::Torque { .. }
+                    | LoadKind::Distributed(_)
+                    | LoadKind::Controller(_)
             )
         };
         let driven = self.joints.iter().any(|joint| !joint.drives.is_empty());
@@ -86,7 +93,10 @@ impl<S: Scalar> Model<S> {
             }
             LoadKind::Contact(own) => own.law.dissipation.re() == 0.0 && own.friction.re() == 0.0,
             // They are judged as what feeds the motion.
-            LoadKind::Force { .. } | LoadKind::Torque { .. } | LoadKind::Distributed(_) => true,
+            LoadKind::Force { .. }
+            | LoadKind::Torque { .. }
+            | LoadKind::Distributed(_)
+            | LoadKind::Controller(_) => true,
         };
         let undamped = |body: &FlexibleBody<S>| match &body.form {
             Form::Modal(modal) => {
@@ -108,33 +118,42 @@ impl<S: Scalar> Model<S> {
         rounded.fold(0.0, |slack, joint| slack.max(joint.fit.tolerance))
     }
 
-    /// Whether a body carries elastic coordinates, the coordinate of a coupling, or counts turns.
+    /// Whether a body carries elastic coordinates, the coordinate of a coupling or the state of a controller, or counts turns.
     pub fn is_carrier(&self, body: usize) -> bool {
         let mut all = self.flexible.iter();
         all.any(|flexible| flexible.carriers().contains(&body)) || self.holds_angles(body)
     }
 
-    /// Whether the position of a body is no place: it counts turns or is the coordinate of a coupling.
+    /// Whether the position of a body is no place: it counts turns, or is the coordinate of a coupling or a controller.
     pub fn holds_angles(&self, body: usize) -> bool {
         self.is_counter(body) || self.is_coordinate(body)
     }
 
-    /// Whether a body counts the turns of a torsion spring or a stop.
+    /// Whether a body counts the turns of a joint for a load.
     pub fn is_counter(&self, body: usize) -> bool {
-        let counts = |load: &Load<S>| load.kind.counter() == Some(body);
+        let counts = |load: &Load<S>| match &load.kind {
+            LoadKind::Controller(own) => own.counters().any(|(_, counter)| counter == body),
+            kind => kind.counter() == Some(body),
+        };
         self.loads.iter().any(counts)
     }
 
-    /// Gives a torsion spring or a stop a body that counts the turns of its joint, whose angle starts so.
-    pub fn count_turns(&mut self, load: usize, angle: f64) {
-        let body = self.bodies.len();
+    /// Gives a load bodies that count the turns of its joints, whose angles start so: one of a torsion spring or a stop; of a
+    /// controller one for each joint whose rotation it measures.
+    pub fn count_turns(&mut self, load: usize, angles: &[f64]) {
         let Load { name, kind } = &mut self.loads[load];
-        if let LoadKind::TorsionSpring { counter, .. } | LoadKind::JointStop { counter, .. } = kind
-        {
-            *counter = Some(body);
+        let counters: Vec<&mut Option<usize>> = match kind {
+            LoadKind::TorsionSpring { counter, .. } | LoadKind::JointStop { counter, .. } => {
+                vec![counter]
+            }
+            LoadKind::Controller(own) => own.rotations().collect(),
+            _ => Vec::new(),
+        };
+        for (counter, angle) in counters.into_iter().zip(angles) {
+            *counter = Some(self.bodies.len());
             let mut own = RigidBody::massless(format!("{name}, turns"));
             own.mobility = Mobility::fixed();
-            own.position.x = S::from(angle);
+            own.position.x = S::from(*angle);
             self.bodies.push(own);
         }
     }

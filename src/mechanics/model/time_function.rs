@@ -4,16 +4,18 @@
 //! polynomial   m(t) = c0 + c1 t + c2 t² + …
 //! harmonic     m(t) = m + A sin(2π f t + φ)
 //! table        m(t) = interpolation between (t_i, m_i), see [`super::table`]; constant outside
+//! S-curve      m(t) from one value to another within a speed and an acceleration, see [`super::s_curve`]
 //! ```
 //!
 //! Accelerations depend on the second derivative of a prescribed motion. So its tables are twice
 //! continuously differentiable ([`Smoothness::Motion`]).
 
+use super::s_curve::SCurve;
 use super::table::{
     Bracket, Interpolation, Smoothness, around, by_points, interpolate, interval, polynomial,
 };
 use crate::math::scalar::Dual;
-use crate::math::{Scalar, parameters};
+use crate::math::{Parameters, Scalar, parameters};
 use std::f64::consts::TAU;
 
 /// A function of time: a force \[N\], torque \[N m\], angle \[rad\] or displacement \[m\].
@@ -43,18 +45,65 @@ pub enum TimeFunction<S> {
         /// Continuous derivatives.
         smoothness: Smoothness,
     },
+    /// A way from one value to another, at rest before and after it.
+    SCurve(SCurve<S>),
 }
 
 parameters!(enum TimeFunction {
     Polynomial(; coefficients),
     Harmonic {; mean, amplitude, frequency, phase },
     Table { interpolation, smoothness; times, values },
+    SCurve(; curve),
 });
 
 impl<S: Scalar> TimeFunction<S> {
     /// A constant.
     pub fn constant(value: S) -> Self {
         Self::Polynomial(vec![value])
+    }
+
+    /// The same function of the time since `start` \[s\]: m(t + start).
+    pub fn since(&self, start: S) -> Self {
+        match self {
+            Self::Polynomial(coefficients) => {
+                // Taylor's polynomial there, by repeated division (Horner).
+                let mut all = coefficients.clone();
+                for from in 0..all.len() {
+                    for k in (from..all.len() - 1).rev() {
+                        let next = all[k + 1];
+                        all[k] += next * start;
+                    }
+                }
+                Self::Polynomial(all)
+            }
+            Self::Harmonic {
+                mean,
+                amplitude,
+                frequency,
+                phase,
+            } => Self::Harmonic {
+                mean: *mean,
+                amplitude: *amplitude,
+                frequency: *frequency,
+                phase: *phase + *frequency * start * TAU,
+            },
+            Self::SCurve(curve) => {
+                let mut own = curve.clone();
+                own.start -= start;
+                Self::SCurve(own)
+            }
+            Self::Table {
+                times,
+                values,
+                interpolation,
+                smoothness,
+            } => Self::Table {
+                times: times.iter().map(|&t| t - start).collect(),
+                values: values.clone(),
+                interpolation: *interpolation,
+                smoothness: *smoothness,
+            },
+        }
     }
 
     /// Value at `time` \[s\].
@@ -72,6 +121,7 @@ impl<S: Scalar> TimeFunction<S> {
                 frequency,
                 phase,
             } => harmonic([*mean, *amplitude, *frequency, *phase], time),
+            Self::SCurve(curve) => curve.derivatives(time),
             Self::Table {
                 times,
                 values,
@@ -128,6 +178,16 @@ impl TimeFunction<f64> {
                     *own += along(harmonic(moved, now));
                 }
             }
+            (Self::SCurve(curve), Self::SCurve(own)) => {
+                for (j, own) in own.all_mut().into_iter().enumerate() {
+                    let mut at = 0;
+                    let moved = curve.map(&mut |x| {
+                        at += 1;
+                        Dual::new(x, if at == j + 1 { 1.0 } else { 0.0 })
+                    });
+                    *own += along(moved.derivatives(now));
+                }
+            }
             (
                 Self::Table {
                     times,
@@ -157,7 +217,8 @@ impl TimeFunction<f64> {
     }
 }
 
-fn held<S: Scalar>(value: S) -> [S; 4] {
+/// A constant with its derivatives.
+pub(super) fn held<S: Scalar>(value: S) -> [S; 4] {
     [value, S::zero(), S::zero(), S::zero()]
 }
 
@@ -177,7 +238,6 @@ fn harmonic<S: Scalar>([mean, amplitude, frequency, phase]: [S; 4], time: S) -> 
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::math::Parameters;
     use crate::math::scalar::{COMPLEX_STEP, Complex64};
     use crate::model::table::breaks;
 
@@ -199,13 +259,24 @@ mod tests {
         }
     }
 
+    /// A way with a cruise between, or one that is too short for its speed.
+    fn s_curve(to: f64) -> TimeFunction<f64> {
+        TimeFunction::SCurve(SCurve {
+            from: 0.1,
+            to,
+            start: 0.1,
+            speed: 0.9,
+            acceleration: 3.0,
+        })
+    }
+
     const ALL: [Interpolation; 3] = [
         Interpolation::Linear,
         Interpolation::Monotone,
         Interpolation::Spline,
     ];
 
-    fn courses() -> [TimeFunction<f64>; 9] {
+    fn courses() -> [TimeFunction<f64>; 11] {
         let [linear, monotone, spline] = ALL.map(table);
         let [straight, cubic, quintic] = ALL.map(magnitude);
         [
@@ -223,6 +294,8 @@ mod tests {
             straight,
             cubic,
             quintic,
+            s_curve(1.3),
+            s_curve(-0.2),
         ]
     }
 
@@ -236,6 +309,21 @@ mod tests {
                 for k in 0..3 {
                     let rate = exact[k].im / COMPLEX_STEP;
                     assert!((rate - given[k + 1]).abs() <= 1e-12 * (1.0 + rate.abs()));
+                }
+            }
+        }
+    }
+
+    #[test]
+    fn a_function_since_an_instant_is_that_of_the_later_time() {
+        for course in courses() {
+            for start in [0.0, 0.37, 1.1, 2.6] {
+                let later = course.since(start);
+                for t in [0.02, 0.2, 0.6, 0.79, 1.7] {
+                    let (given, found) = (course.derivatives(start + t), later.derivatives(t));
+                    for (a, b) in given.iter().zip(found) {
+                        assert!((a - b).abs() <= 1e-11 * (1.0 + a.abs()), "{course:?} {t}");
+                    }
                 }
             }
         }

@@ -59,7 +59,11 @@ pub fn observe(
         position_drift: 0.0,
         velocity_drift: 0.0,
     };
-    for (body, motion) in model.bodies.iter().zip(&motions) {
+    let states = model.states();
+    for (i, (body, motion)) in model.bodies.iter().zip(&motions).enumerate() {
+        if states.contains(&i) {
+            continue;
+        }
         let momentum = motion.velocity * body.mass;
         let spin = body.inertia * motion.omega;
         seen.kinetic += 0.5 * (momentum.dot(&motion.velocity) + spin.dot(&motion.omega));

@@ -161,7 +161,7 @@ impl<S: Scalar> PlanarJoints<S> {
         let mut planes = Vec::with_capacity(model.bodies.len() + 1);
         for (i, body) in model.bodies.iter().enumerate() {
             // No joint holds it.
-            if model.is_counter(i) {
+            if model.holds_angles(i) {
                 planes.push(BodyPlane {
                     along: [Vec3::x(), Vec3::y()],
                     normal: Vec3::z(),

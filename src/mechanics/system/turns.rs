@@ -1,4 +1,4 @@
-//! Whole turns of joints with torsion springs or stops.
+//! Whole turns of joints with torsion springs, stops or controllers.
 //!
 //! The state gives the angle of a joint up to whole turns, and a spring or a stop needs all of it. A body without mass and unknowns, the
 //! counter of the load, has the angle φ_k of the last step as the first component of its position. With the Euler parameters
@@ -14,7 +14,7 @@
 use super::numbering::Numbering;
 use crate::math::rotation::{Quat, compose, conjugate, twist};
 use crate::math::{Scalar, Vec3};
-use crate::model::Model;
+use crate::model::{LoadKind, Model};
 use std::f64::consts::TAU;
 
 /// The counted angle \[rad\] of a joint whose bodies A and B have these Euler parameters, nearest to `known`; `counter` is the
@@ -41,10 +41,7 @@ pub(super) fn counted<S: Scalar>(
 /// Counts the turns at the end of a step in its positions.
 pub fn count<S: Scalar>(model: &Model<S>, numbering: &Numbering, q: &mut [S]) {
     let ground = [S::one(), S::zero(), S::zero(), S::zero()];
-    for load in &model.loads {
-        let (Some(joint), Some(counter)) = (load.kind.joint(), load.kind.counter()) else {
-            continue;
-        };
+    let mut count = |(joint, counter): (usize, usize)| {
         let of = |body: usize| {
             let p = &q[numbering.position(body) + 3..];
             [p[0], p[1], p[2], p[3]]
@@ -54,5 +51,14 @@ pub fn count<S: Scalar>(model: &Model<S>, numbering: &Numbering, q: &mut [S]) {
         let ends = [&of(a), &b.map_or(ground, of)];
         let angle = counted(model, (joint, counter), ends, q[known].re());
         q[known] = S::from(angle);
+    };
+    for load in &model.loads {
+        match &load.kind {
+            LoadKind::Controller(own) => own.counters().for_each(&mut count),
+            kind => {
+                let own = kind.joint().zip(kind.counter());
+                own.into_iter().for_each(&mut count);
+            }
+        }
     }
 }

@@ -196,7 +196,8 @@ impl Checker<'_> {
         self.loaded_joint(pointer, joint, &kinds);
     }
 
-    fn motion(&mut self, pointer: &str, course: TimeFunction) {
+    /// Checks a motion in time.
+    pub(super) fn motion(&mut self, pointer: &str, course: TimeFunction) {
         match course {
             TimeFunction::Polynomial([]) => {
                 let finding = Finding::new(
@@ -207,7 +208,16 @@ impl Checker<'_> {
                 self.fault(finding);
             }
             TimeFunction::Table(times, values, _) => self.table(pointer, times, values),
-            TimeFunction::Rate(_) | TimeFunction::Polynomial(_) | TimeFunction::Harmonic(_) => {}
+            TimeFunction::SCurve([from, to, ..]) if from.value == to.value => {
+                let found = format!("a way from {} to {0}", to.value);
+                let place = join(&join(pointer, "s_curve"), "to");
+                let expected = "another value than that before the way";
+                self.fault(Finding::new(place, found, expected));
+            }
+            TimeFunction::Rate(_)
+            | TimeFunction::Polynomial(_)
+            | TimeFunction::Harmonic(_)
+            | TimeFunction::SCurve(_) => {}
         }
     }
 }

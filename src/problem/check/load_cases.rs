@@ -144,7 +144,8 @@ impl Checker<'_> {
             | Function::Clearance(_)
             | Function::DampingRatio(_)
             | Function::CriticalSpeed(_)
-            | Function::Duration => {
+            | Function::Duration
+            | Function::EventTime(_) => {
                 let expected = "a function of structures, such as \"mass\", or a \"simulation\"";
                 self.fault(Finding::new(pointer, "a function of a motion", expected));
             }

@@ -115,6 +115,7 @@ impl Checker<'_> {
                 self.direction(&join(pointer, "direction"), &load.direction);
                 self.course(&join(pointer, "magnitude"), load.magnitude.parts());
             }
+            Load::Controller(own) => self.controller(pointer, own),
             Load::Line(load) => {
                 self.loaded_elements(pointer, &load.body, ("beams", &load.beams));
                 self.direction(&join(pointer, "direction"), &load.direction);
@@ -231,6 +232,7 @@ impl Checker<'_> {
             | Load::Pressure(_)
             | Load::Area(_)
             | Load::Edge(_)
+            | Load::Controller(_)
             | Load::Line(_) => false,
         };
         let loads = &self.document.loads;
@@ -251,20 +253,48 @@ impl Checker<'_> {
 
     /// Checks a stop: what it stops, and its limits.
     fn stop(&mut self, pointer: &str, stop: &Stop) {
+        let of = (&stop.joint, stop.motion, &stop.between, &stop.at);
+        self.joint_or_distance(pointer, of, ("stopped", "stops"));
+        match (&stop.lower, &stop.upper) {
+            (None, None) => {
+                let expected = "\"lower\", \"upper\" or both";
+                self.fault(Finding::new(pointer, "a stop without a limit", expected).of_key());
+            }
+            (Some(lower), Some(upper)) if lower.value >= upper.value => {
+                let found = format!("{} above {}", lower.value, upper.value);
+                let expected = "a lower limit below the upper one";
+                self.fault(Finding::new(join(pointer, "lower"), found, expected));
+            }
+            (Some(_), Some(_)) | (Some(_), None) | (None, Some(_)) => {}
+        }
+    }
+
+    /// Checks the joint of a load with its motion, or its bodies with their points.
+    pub(super) fn joint_or_distance(
+        &mut self,
+        pointer: &str,
+        (joint, motion, between, at): (
+            &Option<String>,
+            Option<Motion>,
+            &Option<[String; 2]>,
+            &Option<Ends>,
+        ),
+        (done, does): (&str, &str),
+    ) {
         use JointKind::{Cylindrical, Planar, Prismatic, Revolute};
-        match (&stop.joint, &stop.between, &stop.at) {
+        match (joint, between, at) {
             (Some(joint), None, None) => {
                 let kinds = [Revolute, Prismatic, Cylindrical, Planar];
                 self.loaded_joint(pointer, joint, &kinds);
-                self.joint_motion(pointer, joint, stop.motion);
+                self.joint_motion(pointer, joint, motion);
             }
             (None, Some(between), Some(at)) => {
                 self.between(&join(pointer, "between"), between);
                 if let Ends::Each(pair) = at {
                     self.pair(&join(pointer, "at"), between, pair);
                 }
-                if stop.motion.is_some() {
-                    let expected = "none, as it stops a distance";
+                if motion.is_some() {
+                    let expected = format!("none, as it {does} a distance");
                     let finding = Finding::new(join(pointer, "motion"), "a motion", expected);
                     self.fault(finding.of_key());
                 }
@@ -277,24 +307,12 @@ impl Checker<'_> {
                 ];
                 let given: Vec<&str> = keys.iter().filter(|key| key.0).map(|key| key.1).collect();
                 let found = match given.is_empty() {
-                    true => "nothing that is stopped".to_owned(),
+                    true => format!("nothing that is {done}"),
                     false => given.join(" and "),
                 };
                 let expected = "\"joint\", or \"between\" and \"at\"";
                 self.fault(Finding::new(pointer, found, expected).of_key());
             }
-        }
-        match (&stop.lower, &stop.upper) {
-            (None, None) => {
-                let expected = "\"lower\", \"upper\" or both";
-                self.fault(Finding::new(pointer, "a stop without a limit", expected).of_key());
-            }
-            (Some(lower), Some(upper)) if lower.value >= upper.value => {
-                let found = format!("{} above {}", lower.value, upper.value);
-                let expected = "a lower limit below the upper one";
-                self.fault(Finding::new(join(pointer, "lower"), found, expected));
-            }
-            (Some(_), Some(_)) | (Some(_), None) | (None, Some(_)) => {}
         }
     }
 
@@ -354,7 +372,7 @@ impl Checker<'_> {
     }
 
     /// Checks that a joint has the degree of freedom on which a load acts.
-    fn joint_motion(&mut self, pointer: &str, joint: &str, motion: Option<Motion>) {
+    pub(super) fn joint_motion(&mut self, pointer: &str, joint: &str, motion: Option<Motion>) {
         let (Some(joint), Some(motion)) = (self.document.joints.get(joint), motion) else {
             return;
         };
@@ -366,7 +384,7 @@ impl Checker<'_> {
         }
     }
 
-    fn course(&mut self, pointer: &str, course: TimeFunction) {
+    pub(super) fn course(&mut self, pointer: &str, course: TimeFunction) {
         if let TimeFunction::Table(times, values, _) = course {
             self.table(pointer, times, values);
         }

@@ -1,8 +1,10 @@
 //! Checks the meaning of a document: names, numbers, and faults that a schema cannot express.
 
 mod beams;
+mod controllers;
 mod couplings;
 mod elements;
+mod events;
 mod joints;
 mod load_cases;
 mod loads;
@@ -39,6 +41,7 @@ pub(super) fn check(document: &Document, damage: &Damage) -> Vec<Finding> {
     checker.drives();
     checker.couplings();
     checker.structures();
+    checker.events();
     checker.analysis();
     checker.study();
     checker.findings

@@ -175,6 +175,9 @@ impl Checker<'_> {
         if let Function::Expression(_) | Function::OverCases(_) = function {
             return;
         }
+        if let Function::EventTime(event) = function {
+            self.event(&join(pointer, "event_time"), event);
+        }
         let Some(function) = function.of_motion() else {
             let expected = "a function of a motion, or \"structures\" without a \"simulation\"";
             self.fault(Finding::new(pointer, "a function of structures", expected));
@@ -279,6 +282,10 @@ impl Checker<'_> {
             }
             Instant::Penetration(of) => {
                 self.stop_of(&join(pointer, "penetration"), &of.load, false);
+            }
+            Instant::Effort(of) => self.controller_of(&join(pointer, "effort"), &of.load),
+            Instant::TrackingError(of) => {
+                self.controller_of(&join(pointer, "tracking_error"), &of.load);
             }
             Instant::Rotation(rotation) => {
                 let pointer = join(pointer, "rotation");

@@ -77,7 +77,7 @@ impl Checker<'_> {
         let pointer = join(pointer, "during");
         let time = |edge: &Edge| match edge {
             Edge::Time(time) => Some(time.value),
-            Edge::When(_) => None,
+            Edge::When(_) | Edge::Event(_) => None,
         };
         let (from, to) = match during {
             During::Times(ends) => {
@@ -95,6 +95,17 @@ impl Checker<'_> {
                 if own.from.is_none() && own.to.is_none() {
                     let expected = "\"from\", \"to\" or both";
                     self.fault(Finding::new(&pointer, "no end", expected).of_key());
+                }
+                let index = |edge: &Option<Edge>| {
+                    let event = edge.as_ref()?.event()?;
+                    self.document.events.get_index_of(event)
+                };
+                if let (Some(from), Some(to)) = (index(&own.from), index(&own.to))
+                    && from >= to
+                {
+                    let expected = "an event that comes later than that of \"from\"";
+                    let found = "an event that does not";
+                    self.fault(Finding::new(join(&pointer, "to"), found, expected));
                 }
                 let ends = [&own.from, &own.to].map(|edge| edge.as_ref().and_then(time));
                 (ends[0], ends[1])
@@ -114,6 +125,17 @@ impl Checker<'_> {
         match edge {
             Edge::Time(time) => self.time(pointer, time.value),
             Edge::When(reach) => self.reach(pointer, reach),
+            Edge::Event(own) => self.event(&join(pointer, "event"), &own.event),
+        }
+    }
+
+    /// Checks the name of an event.
+    pub(super) fn event(&mut self, pointer: &str, name: &str) {
+        let events = &self.document.events;
+        if !events.contains_key(name) && !self.damage.touches("events") {
+            let hint = advice(name, "events", events.keys().map(String::as_str));
+            let found = format!("\"{name}\"");
+            self.fault(Finding::new(pointer, found, "the name of an event").hint(hint));
         }
     }
 

@@ -141,6 +141,16 @@ impl Writer<'_> {
         }
         used.rename_body(entry.get_mut("body"));
         used.rename_joint(entry.get_mut("joint"));
+        let of_controller = ["feedback", "gravity_compensation"].map(|key| {
+            let list = entry.get(key).and_then(Value::as_array);
+            list.map_or(0, Vec::len)
+        });
+        for k in 0..of_controller[0] {
+            used.rename_joint(entry["feedback"][k].get_mut("joint"));
+        }
+        for k in 0..of_controller[1] {
+            used.rename_body(entry["gravity_compensation"][k].get_mut("body"));
+        }
         let at = join(pointer, "at");
         match entry.get_mut("at") {
             own @ Some(Value::String(_)) => used.rename_location(own),

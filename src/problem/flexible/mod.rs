@@ -13,6 +13,7 @@ use super::placement::Assembly;
 use crate::functions::{Function, TerminalEvent};
 use crate::math::scalar::lift3;
 use crate::math::{Scalar, Vec3};
+use crate::model::controller::Coordinate;
 use crate::model::finite::FiniteElements;
 use crate::model::flexible::Modes;
 use crate::model::flexible::{Form, Inertia, Modal};
@@ -411,6 +412,27 @@ impl<S: Scalar> FlexibleBodies<S> {
                     {
                         let mut point = assembly.in_body(&torque.body, point);
                         self.move_place(model, load, body, &mut point);
+                    }
+                }
+                LoadKind::Controller(own) => {
+                    let coordinates = own.feedback.iter_mut().map(|own| &mut own.coordinate);
+                    for coordinate in coordinates {
+                        let Coordinate::Distance {
+                            body_a,
+                            body_b,
+                            point_a,
+                            point_b,
+                        } = coordinate
+                        else {
+                            continue;
+                        };
+                        self.move_place(model, load, body_a, point_a);
+                        if let Some(body) = body_b {
+                            self.move_place(model, load, body, point_b);
+                        }
+                    }
+                    for own in &mut own.weights {
+                        self.move_place(model, load, &mut own.body, &mut own.point);
                     }
                 }
                 // These act on joints, which have moved, or on all nodes.

@@ -142,6 +142,7 @@ fn of(document: &Document, function: &Written, cuts: usize) -> Asked {
         | Written::Value(_)
         | Written::Clearance(_)
         | Written::Duration
+        | Written::EventTime(_)
         | Written::OverCases(_)
         | Written::DampingRatio(_)
         | Written::CriticalSpeed(_)

@@ -1,6 +1,7 @@
 //! A design in all cases of a problem: each is analysed by itself, side by side on the cores. Values and derivatives of
 //! functions over cases follow from those of the cases.
 
+pub(crate) mod phases;
 mod spread;
 
 use super::{Analysed, AnalysisFailure, Simulated};
@@ -10,7 +11,7 @@ use crate::estimate::with_expressions;
 use crate::integrate::WorkCounts;
 use crate::integration::{Integration, Refresh};
 use crate::math::soft_max::{Far, Smoothed, two_digits};
-use crate::problem::{Case, Cases, Composition, Problem};
+use crate::problem::{Case, Cases, Composition, Division, Problem};
 use crate::report::optimum::{Aggregate, Integration as IntegrationRecord};
 use rayon::prelude::*;
 use spread::Spread;
@@ -34,9 +35,18 @@ pub struct InCases<T> {
 
 /// A failure with the name of its case.
 fn of_case(case: &Case) -> impl Fn(AnalysisFailure) -> AnalysisFailure + '_ {
-    |failure| AnalysisFailure::InCase {
-        case: case.name.clone(),
-        failure: Box::new(failure),
+    |failure| {
+        let (name, failure) = (case.name.clone(), Box::new(failure));
+        match case.problem.is_phase() {
+            true => AnalysisFailure::InPhase {
+                phase: name,
+                failure,
+            },
+            false => AnalysisFailure::InCase {
+                case: name,
+                failure,
+            },
+        }
     }
 }
 
@@ -158,6 +168,9 @@ impl InCases<Analysed> {
         let idle = (ranks.as_ref()).is_some_and(|_| spread::must_end(integration, problem));
         let is_own = |c: usize| !idle && ranks.as_ref().is_none_or(|ranks| ranks.owns(c));
         let chosen = spread::chosen(integration);
+        if cases.division == Division::Events {
+            return Self::in_phases(integration, (problem, cases), x, &wanted);
+        }
         let all = integration.cases.par_iter_mut().zip(&cases.list);
         let found = all
             .zip(&wanted)
@@ -179,6 +192,35 @@ impl InCases<Analysed> {
         let found: Vec<Result<_, AnalysisFailure>> = found.collect();
         integration.count_cases();
         let found: Vec<AnalysedOnce> = found.into_iter().collect::<Result<_, _>>()?;
+        let spread = ranks.map(|ranks| Spread::new(ranks, wanted));
+        let (found, refresh) = Self::told(integration, (problem, cases), x, found);
+        Ok((Self { spread, ..found }, refresh))
+    }
+
+    /// The phases of a motion at the design `x`, each of which begins as the one before it ends.
+    fn in_phases(
+        integration: &mut Integration,
+        (problem, cases): (&Problem, &Arc<Cases>),
+        x: &[f64],
+        wanted: &[Vec<usize>],
+    ) -> Result<(Self, Option<Refresh>), AnalysisFailure> {
+        let steps = &mut integration.cases;
+        let of = |p: usize, own: &Problem, x: &[f64]| {
+            let steps = steps[p].get_or_insert_with(|| Integration::of(own, None, true));
+            Analysed::with(steps, own, x, &wanted[p])
+        };
+        let found = phases::each(cases, x, of, |(at, _)| phases::motion(at));
+        integration.count_cases();
+        Ok(Self::told(integration, (problem, cases), x, found?))
+    }
+
+    /// Cases with the changes of their steps.
+    fn told(
+        integration: &Integration,
+        (problem, cases): (&Problem, &Arc<Cases>),
+        x: &[f64],
+        found: Vec<AnalysedOnce>,
+    ) -> (Self, Option<Refresh>) {
         let reasons = cases.list.iter().zip(&found).filter_map(|(case, own)| {
             let refresh = own.as_ref()?.1.as_ref()?;
             Some(format!("{}: {}", case.name, refresh.reason))
@@ -189,9 +231,7 @@ impl InCases<Analysed> {
             false => integration.in_use(&reasons.join("; ")),
         };
         let list = found.into_iter().map(|own| Some(own?.0)).collect();
-        let spread = ranks.map(|ranks| Spread::new(ranks, wanted));
-        let found = Self::new(problem, cases, x, list);
-        Ok((Self { spread, ..found }, refresh))
+        (Self::new(problem, cases, x, list), refresh)
     }
 
     /// The value of a function.
@@ -214,6 +254,11 @@ impl InCases<Analysed> {
         &self,
         which: &[usize],
     ) -> Result<(Vec<Vec<f64>>, WorkCounts), AnalysisFailure> {
+        let values = |row: Vec<Derivative>| row.into_iter().map(|own| own.value).collect();
+        if self.cases.division == Division::Events {
+            let (rows, work) = phases::derivatives(self, which)?;
+            return Ok((rows.into_iter().map(values).collect(), work));
+        }
         let work = std::sync::Mutex::new(WorkCounts::default());
         if let Some(spread) = &self.spread {
             spread.differentiate(self)?;
@@ -234,8 +279,7 @@ impl InCases<Analysed> {
             Ok(rows.into_iter().map(row).collect())
         };
         let rows = self.derivatives(which, &Analysed::value, &of)?;
-        let row = |row: Vec<Derivative>| row.into_iter().map(|own| own.value).collect();
-        let rows = rows.into_iter().map(row).collect();
+        let rows = rows.into_iter().map(values).collect();
         Ok((rows, work.into_inner().unwrap_or_default()))
     }
 
@@ -270,6 +314,10 @@ impl InCases<Analysed> {
         if let Some(spread) = &self.spread {
             return spread.refused(self);
         }
+        // Gradients of phases also have those by the states with which they begin.
+        if self.cases.division == Division::Events {
+            return None;
+        }
         let wanted = self.cases.wanted(&self.composition.of_scene(which));
         let all = self.cases.list.iter().zip(&self.list).zip(&wanted);
         let mut all = all.filter(|(_, wanted)| !wanted.is_empty());
@@ -295,6 +343,14 @@ impl InCases<Simulated> {
         let mut none = Vec::new();
         let steps = integration.map_or(&mut none, |own| &mut own.cases);
         steps.resize_with(cases.list.len(), || None);
+        if cases.division == Division::Events {
+            let of = |p: usize, own: &Problem, x: &[f64]| match &mut steps[p] {
+                Some(steps) => Simulated::with(steps, own, x),
+                None => Simulated::of(own, x),
+            };
+            let list = phases::each(cases, x, of, phases::observed)?;
+            return Ok(Self::new(problem, cases, x, list));
+        }
         let found = steps.par_iter_mut().zip(&cases.list).map(|(own, case)| {
             let found = match own {
                 Some(own) => Simulated::with(own, &case.problem, x),
@@ -373,6 +429,9 @@ impl InCases<Simulated> {
         which: &[usize],
         gradients: bool,
     ) -> Result<Vec<FunctionError>, AnalysisFailure> {
+        if self.cases.division == Division::Events {
+            return phases::estimate(self, problem, which, gradients);
+        }
         with_expressions((problem, &self.x), which, |flat| {
             let wanted = self.cases.wanted(flat);
             let all = self.cases.list.par_iter().zip(&self.list).zip(&wanted);
@@ -419,7 +478,10 @@ impl InCases<Simulated> {
         methods.dedup();
         (!all.is_empty()).then(|| IntegrationRecord {
             method: methods.join(", "),
-            reason: format!("of {} cases", self.cases.list.len()),
+            reason: match self.cases.division {
+                Division::Cases => format!("of {} cases", self.cases.list.len()),
+                Division::Events => format!("of {} phases", self.cases.list.len()),
+            },
             steps: all.iter().map(|own| own.steps).sum(),
             refreshes: refreshes as u64,
         })

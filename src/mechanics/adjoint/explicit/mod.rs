@@ -63,7 +63,7 @@ pub(super) fn gradients(
         counts.steps += 1;
         // No function may depend on the end of the motion.
         let concerns =
-            |sweep: &Sweep| sweep.begun || samples.clone().any(|k| sweep.of.depends_on(k));
+            |sweep: &Sweep| sweep.begun || samples.clone().any(|k| sweep.of.depends_on(run, k));
         if !sweeps.iter().any(concerns) {
             continue;
         }

@@ -1,8 +1,11 @@
-//! Quantities of springs, stops and contacts for functions, with their derivatives.
+//! Quantities of springs, stops, contacts and controllers for functions, with their derivatives.
 
 use super::power::{angle, stretch, tension, torsion, turn_rate};
 use super::pull::{Pulled, pull_angle, pull_rate, pull_turn};
-use super::{Acting, contact, for_each_load, give_to_parameters, give_to_states, stop};
+use super::{
+    Acting, LoadCotangent, contact, controlled, for_each_load, give_to_parameters, give_to_states,
+    stop,
+};
 use crate::math::Scalar;
 use crate::model::{Contact, LoadKind};
 use crate::system::InMotion;
@@ -27,6 +30,14 @@ pub enum LoadPart {
     NormalTorque,
     /// Size of the friction of a contact \[N\].
     Friction,
+    /// Force by which a controller acts along its coordinate \[N\].
+    EffortForce,
+    /// The same about the axis of a joint \[N m\].
+    EffortTorque,
+    /// What a controller's coordinate lacks to its reference \[m\].
+    ErrorLength,
+    /// The same of an angle \[rad\].
+    ErrorAngle,
 }
 
 /// A measure of a load.
@@ -40,6 +51,14 @@ pub struct LoadMeasure {
 
 /// Its value in a motion.
 pub fn value<S: Scalar>(at: &InMotion<S>, measure: LoadMeasure) -> S {
+    let own = match measure.part {
+        LoadPart::EffortForce | LoadPart::EffortTorque => controlled::effort(at, measure.load),
+        LoadPart::ErrorLength | LoadPart::ErrorAngle => controlled::error(at, measure.load),
+        _ => None,
+    };
+    if let Some(value) = own {
+        return value;
+    }
     let mut value = S::zero();
     for_each_load(at.model, at.motions, |i, kind, acting| {
         if i == measure.load {
@@ -68,6 +87,10 @@ fn of<S: Scalar>(kind: &LoadKind<S>, at: &Acting<S>, part: LoadPart) -> S {
             _ => stop::of(kind).expect(CHECKED).normal(at),
         },
         LoadPart::Friction => contact::tangential(touching(kind), at),
+        LoadPart::EffortForce
+        | LoadPart::EffortTorque
+        | LoadPart::ErrorLength
+        | LoadPart::ErrorAngle => unreachable!("{CHECKED}"),
     }
 }
 
@@ -109,8 +132,33 @@ fn torsion_spring<S: Scalar>(kind: &LoadKind<S>) -> [S; 4] {
     [*rest_angle, *stiffness, *cubic, *damping]
 }
 
-/// Adds `weight` times the derivative of [`value`] to states and parameters.
-pub fn pull_back(at: &InMotion<f64>, measure: LoadMeasure, weight: f64, out: &mut JointCotangent) {
+/// Adds `weight` times the derivative of [`value`] to states and parameters. Returns the derivative in time.
+pub fn pull_back(
+    at: &InMotion<f64>,
+    measure: LoadMeasure,
+    weight: f64,
+    out: &mut JointCotangent,
+) -> f64 {
+    let mut by_time = 0.0;
+    let mut to = LoadCotangent {
+        y: out.y.as_deref_mut(),
+        v: out.v.as_deref_mut(),
+        time: &mut by_time,
+        model: out.model,
+    };
+    match measure.part {
+        LoadPart::EffortForce | LoadPart::EffortTorque => {
+            controlled::pull_effort(at, measure.load, weight, &mut to);
+        }
+        LoadPart::ErrorLength | LoadPart::ErrorAngle => {
+            controlled::pull_error(at, measure.load, weight, &mut to);
+        }
+        _ => pull_others(at, measure, weight, out),
+    }
+    by_time
+}
+
+fn pull_others(at: &InMotion<f64>, measure: LoadMeasure, weight: f64, out: &mut JointCotangent) {
     for_each_load(at.model, at.motions, |i, kind, acting| {
         if i == measure.load {
             let pulled = pull(kind, acting, measure.part, weight);
@@ -162,6 +210,10 @@ fn pull(kind: &LoadKind<f64>, at: &Acting<f64>, part: LoadPart, weight: f64) -> 
             stop.pull_penetration(at, weight, &mut out);
         }
         LoadPart::Friction => contact::pull_tangential(touching(kind), at, weight, &mut out),
+        LoadPart::EffortForce
+        | LoadPart::EffortTorque
+        | LoadPart::ErrorLength
+        | LoadPart::ErrorAngle => unreachable!("{CHECKED}"),
         LoadPart::NormalForce | LoadPart::NormalTorque => {
             if let LoadKind::Contact(own) = kind {
                 contact::pull_normal(own, at, weight, &mut out);

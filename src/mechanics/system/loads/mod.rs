@@ -3,16 +3,21 @@
 //! For virtual velocities ψ, ψᵀf is the power of a load, linear in ψ. `power.rs` has the forces and
 //! `pull.rs` the transposed derivative of the power, once for each kind and for any scalar. Forces,
 //! Jacobians and pull-backs all use these two, so they agree. Stops have both in `stop.rs`, contacts in
-//! `contact.rs`, bushings in `bushing.rs`, and the law of the former is in `normal_law.rs`. Loads that are spread over the elements of a
+//! `contact.rs`, controllers in `control_law.rs` and `controller.rs` with the limits of their motors in `motor.rs`, bushings in `bushing.rs`, and the law of the former is in `normal_law.rs`. Loads that are spread over the elements of a
 //! flexible body act on its coordinates too: `distributed.rs` has all of theirs.
 
 mod bushing;
 mod contact;
+mod control_law;
+mod controlled;
+mod controller;
+mod coordinate;
 mod distributed;
 mod drag;
 pub mod gaps;
 mod kinds;
 pub mod measured;
+mod motor;
 mod normal_law;
 mod parameters;
 mod power;
@@ -119,7 +124,7 @@ fn for_loads<S: Scalar>(
             | LoadKind::BallDamping { joint, .. }
             | LoadKind::Bushing { joint, .. }
             | LoadKind::Friction { joint, .. } => on_joint(*joint),
-            LoadKind::Distributed(_) => continue,
+            LoadKind::Distributed(_) | LoadKind::Controller(_) => continue,
         };
         visit(i, &load.kind, &acting);
     }
@@ -136,9 +141,10 @@ pub fn add_forces<S: Scalar>(here: &InMotion<S>, out: &mut [S]) {
         }
     });
     distributed::add_forces(here, out);
+    controller::add_forces(here, out);
 }
 
-/// Adds the forces that supply energy to `out`, in velocity numbering: forces, torques, and loads
+/// Adds the forces that supply energy to `out`, in velocity numbering: forces, torques, efforts of controllers, and loads
 /// on elements. Springs store energy; dampers and friction take it.
 pub fn add_supplying_forces<S: Scalar>(here: &InMotion<S>, out: &mut [S]) {
     for_each_load(here.model, here.motions, |_, kind, at| {
@@ -152,6 +158,7 @@ pub fn add_supplying_forces<S: Scalar>(here: &InMotion<S>, out: &mut [S]) {
         }
     });
     distributed::add_forces(here, out);
+    controller::add_efforts(here, out);
 }
 
 /// Non-zero 3 × 3 blocks of the derivative of a load: (linear, angular) parts.
@@ -205,7 +212,7 @@ fn blocks<S: Scalar>(kind: &LoadKind<S>) -> Blocks {
             DegreeOfFreedom::Rotation => of(ANGULAR, ANGULAR, ANGULAR),
             DegreeOfFreedom::Translation => of(BOTH, BOTH, BOTH),
         },
-        LoadKind::Distributed(_) => of(NONE, NONE, NONE),
+        LoadKind::Distributed(_) | LoadKind::Controller(_) => of(NONE, NONE, NONE),
     }
 }
 
@@ -260,6 +267,7 @@ pub fn emit_jacobian<S: Scalar>(here: &InMotion<S>, to: &LoadEntries<S>, emit: &
         }
     });
     distributed::emit_jacobian(here, to, emit);
+    controller::emit_jacobian(here, to, emit);
 }
 
 /// Destination of the pull-back of the loads.
@@ -289,6 +297,7 @@ pub fn pull_back(here: &InMotion<f64>, psi: &[f64], out: &mut LoadCotangent) {
         give_to_parameters(kind, &pulled, (i, time), (out.model, out.time));
     });
     distributed::pull_back(here, psi, out);
+    controller::pull_back(here, psi, out);
 }
 
 fn give_to_states(

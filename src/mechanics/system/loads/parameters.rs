@@ -129,11 +129,13 @@ pub(super) fn give_to_parameters(
             *width += s1;
         }
         (LoadKind::Contact(_), LoadKind::Contact(own)) => contact::give(pulled, own),
-        (LoadKind::Distributed(_), LoadKind::Distributed(_)) => {}
+        (LoadKind::Distributed(_), LoadKind::Distributed(_))
+        | (LoadKind::Controller(_), LoadKind::Controller(_)) => {}
         (
             LoadKind::Force { .. }
             | LoadKind::Torque { .. }
             | LoadKind::Distributed(_)
+            | LoadKind::Controller(_)
             | LoadKind::Spring { .. }
             | LoadKind::TorsionSpring { .. }
             | LoadKind::Damping { .. }

@@ -93,6 +93,7 @@ pub(super) fn forces<S: Scalar>(
         | LoadKind::Drag { .. }
         | LoadKind::Contact(_)
         | LoadKind::Bushing { .. }
+        | LoadKind::Controller(_)
         | LoadKind::Distributed(_) => [none, none],
     }
 }
@@ -139,6 +140,7 @@ pub(super) fn potential<S: Scalar>(kind: &LoadKind<S>, at: &Acting<S>) -> S {
         | LoadKind::Contact(_)
         | LoadKind::Force { .. }
         | LoadKind::Torque { .. }
+        | LoadKind::Controller(_)
         | LoadKind::Distributed(_)
         | LoadKind::Damping { .. }
         | LoadKind::BallDamping { .. }

@@ -220,6 +220,7 @@ pub(super) fn pull<S: Scalar>(
         | LoadKind::Drag { .. }
         | LoadKind::Contact(_)
         | LoadKind::Bushing { .. }
+        | LoadKind::Controller(_)
         | LoadKind::Distributed(_) => {}
     }
 }
@@ -267,6 +268,7 @@ pub(super) fn pull_potential<S: Scalar>(
         | LoadKind::Contact(_)
         | LoadKind::Force { .. }
         | LoadKind::Torque { .. }
+        | LoadKind::Controller(_)
         | LoadKind::Distributed(_)
         | LoadKind::Damping { .. }
         | LoadKind::BallDamping { .. }
@@ -306,7 +308,12 @@ pub(super) fn pull_point<S: Scalar>(
 }
 
 /// Pulls the cotangent of an axis back.
-fn pull_axis<S: Scalar>(side: &JointSide<S>, axis: usize, x: Vec3<S>, out: &mut SideCotangent<S>) {
+pub(super) fn pull_axis<S: Scalar>(
+    side: &JointSide<S>,
+    axis: usize,
+    x: Vec3<S>,
+    out: &mut SideCotangent<S>,
+) {
     let by = marker::pull_back(
         side.motion,
         &side.frame.axes[axis],

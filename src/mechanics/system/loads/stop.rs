@@ -9,30 +9,18 @@
 //! with N of [`super::normal_law`].
 
 use super::Acting;
+use super::coordinate::Coordinate;
 use super::normal_law::{self, NormalForce};
-use super::power::{SLIDE, angle, apart, speed_seen, turn_rate};
-use super::pull::{Pulled, hold_virtual, pull_angle, pull_rate, pull_row, pull_turn};
+use super::power::speed_seen;
+use super::pull::{Pulled, hold_virtual};
 use crate::math::{Scalar, Vec3};
-use crate::model::{DegreeOfFreedom, LoadKind, NormalLaw};
-use crate::system::constraint;
-use crate::system::rows::RowCotangent;
+use crate::model::{LoadKind, NormalLaw};
 
 /// Sides of the lower and the upper limit.
 const SIDES: [f64; 2] = [1.0, -1.0];
 /// Places of the limits and of the law among the scalars of a load.
 const LIMITS: usize = 0;
 const LAW: usize = 2;
-
-/// The coordinate that is stopped.
-#[derive(Clone, Copy)]
-pub(super) enum Coordinate {
-    /// Angle of a joint.
-    Angle,
-    /// Displacement along the axis of a joint.
-    Slide,
-    /// Distance of two points.
-    Distance,
-}
 
 /// A stop: its coordinate, limits and law.
 pub(super) struct Stop<'a, S> {
@@ -45,17 +33,8 @@ pub(super) struct Stop<'a, S> {
 pub(super) fn of<S>(kind: &LoadKind<S>) -> Option<Stop<'_, S>> {
     let (coordinate, limits, law) = match kind {
         LoadKind::JointStop {
-            dof: DegreeOfFreedom::Rotation,
-            limits,
-            law,
-            ..
-        } => (Coordinate::Angle, limits, law),
-        LoadKind::JointStop {
-            dof: DegreeOfFreedom::Translation,
-            limits,
-            law,
-            ..
-        } => (Coordinate::Slide, limits, law),
+            dof, limits, law, ..
+        } => (Coordinate::from(*dof), limits, law),
         LoadKind::DistanceStop { limits, law, .. } => (Coordinate::Distance, limits, law),
         LoadKind::Force { .. }
         | LoadKind::Torque { .. }
@@ -67,6 +46,7 @@ pub(super) fn of<S>(kind: &LoadKind<S>) -> Option<Stop<'_, S>> {
         | LoadKind::Friction { .. }
         | LoadKind::Drag { .. }
         | LoadKind::Contact(_)
+        | LoadKind::Controller(_)
         | LoadKind::Distributed(_) => return None,
     };
     Some(Stop {
@@ -74,69 +54,6 @@ pub(super) fn of<S>(kind: &LoadKind<S>) -> Option<Stop<'_, S>> {
         limits,
         law,
     })
-}
-
-impl Coordinate {
-    /// x.
-    fn value<S: Scalar>(self, at: &Acting<S>) -> S {
-        match self {
-            Self::Angle => angle(at, S::zero()),
-            Self::Slide => constraint::value(SLIDE, &at.a, &at.b),
-            Self::Distance => apart(at).length,
-        }
-    }
-
-    /// ẋ.
-    fn rate<S: Scalar>(self, at: &Acting<S>) -> S {
-        match self {
-            Self::Angle => turn_rate(at),
-            Self::Slide => constraint::rate(SLIDE, &at.a, &at.b),
-            Self::Distance => apart(at).rate,
-        }
-    }
-
-    /// The generalised forces of a unit force along x, on body A and on body B.
-    fn unit_forces<S: Scalar>(self, at: &Acting<S>) -> [(Vec3<S>, Vec3<S>); 2] {
-        let (ra, rb) = (&at.a.motion.rotation, &at.b.motion.rotation);
-        match self {
-            Self::Angle => {
-                let e = at.a.frame.axes[2];
-                let in_b = rb.tr_mul(&(ra * e));
-                [(Vec3::zeros(), e), (Vec3::zeros(), -in_b)]
-            }
-            Self::Slide => {
-                let g = constraint::gradient(SLIDE, &at.a, &at.b);
-                [(g.force, g.torque_a), (-g.force, g.torque_b)]
-            }
-            Self::Distance => {
-                let (f, sa, sb) = (apart(at).direction, &at.a.frame.point, &at.b.frame.point);
-                [
-                    (f, sa.cross(&ra.tr_mul(&f))),
-                    (-f, -sb.cross(&rb.tr_mul(&f))),
-                ]
-            }
-        }
-    }
-
-    /// Adds the derivatives of `by_value` x + `by_rate` ẋ.
-    fn pull<S: Scalar>(self, at: &Acting<S>, by_value: S, by_rate: S, out: &mut Pulled<S>) {
-        match self {
-            Self::Angle => {
-                pull_angle(at, by_value, out);
-                pull_turn(at, by_rate, out);
-            }
-            Self::Slide => {
-                let cot = RowCotangent {
-                    value: by_value,
-                    rate: by_rate,
-                    acceleration: S::zero(),
-                    virtual_rate: S::zero(),
-                };
-                pull_row(at, SLIDE, cot, out);
-            }
-            Self::Distance => pull_rate(at, &apart(at), (by_value, by_rate), out),
-        }
-    }
 }
 
 impl<S: Scalar> Stop<'_, S> {
