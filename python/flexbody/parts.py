@@ -125,6 +125,8 @@ __all__ = [
     "Method",
     "FirstSteps",
     "LinearSolver",
+    "When",
+    "At",
     "CaseLoad",
     "Strains",
     "Unknowns",
@@ -133,6 +135,7 @@ __all__ = [
     "WindowEnds",
     "Edge",
     "Reach",
+    "AtEvent",
     "Over",
     "Within",
     "Series",
@@ -209,10 +212,12 @@ __all__ = [
     "power_ofs",
     "gate",
     "methods",
+    "at",
     "case_loads",
     "functions",
     "window_ends",
     "reach",
+    "at_event",
     "within",
     "series",
     "data_file",
@@ -610,6 +615,12 @@ class Method(Part):
     __slots__ = ()
 
 
+class At(Part):
+    """A time of the motion. Made by `at`."""
+
+    __slots__ = ()
+
+
 class CaseLoad(Part):
     """A load of a load case. Sets have the name of their structure before a dot, or their own if there is one
     structure. Made by `case_loads`.
@@ -632,6 +643,14 @@ class WindowEnds(Part):
 
 class Reach(Part):
     """A quantity reaches a value: give one of `reaches`, `rises_to` and `falls_to`. Made by `reach`."""
+
+    __slots__ = ()
+
+
+class AtEvent(Part):
+    """An event of the file. A window ends just before it or starts just after it, and a value is that just before
+    it. Made by `at_event`.
+    """
 
     __slots__ = ()
 
@@ -798,6 +817,9 @@ FirstSteps: TypeAlias = Literal["radau", "rising_order"]
 LinearSolver: TypeAlias = Literal["direct", "krylov"]
 """How linear systems are solved."""
 
+When: TypeAlias = Union[TerminalEvent, At]
+"""When an event comes."""
+
 Strains: TypeAlias = Literal["linear", "von_karman"]
 """Strains of structures."""
 
@@ -807,8 +829,8 @@ Unknowns: TypeAlias = Literal["five", "six"]
 During: TypeAlias = Union[Vector, WindowEnds]
 """A window of time: `[start, end]`, or `{"from": …, "to": …}`."""
 
-Edge: TypeAlias = Union[Real, Reach]
-"""A time, or the first time at which a quantity reaches a value."""
+Edge: TypeAlias = Union[Real, Reach, AtEvent]
+"""A time, the first time at which a quantity reaches a value, or an event that changes the machine."""
 
 Over: TypeAlias = Union[Within, Quantity]
 """A quantity, over the whole run or a window of time: the quantity alone, or with `during`."""
@@ -1687,19 +1709,33 @@ def gate(
 
 
 @checked
+def at(*, time: Real) -> At:
+    """A time of the motion.
+
+    Parameters
+    ----------
+    time : number above 0 [s]
+        Time since the start of the motion.
+    """
+    return made(At, "at", locals())
+
+
+@checked
 def window_ends(*, from_: Edge | None = None, to: Edge | None = None) -> WindowEnds:
     """The ends of a window.
 
     Parameters
     ----------
-    from_ : number [s] or `reach(…)`, optional
+    from_ : number [s] or `reach(…)` or `at_event(…)`, optional
         Its start, default the start of the motion.
         number [s]: A time.
         `reach(…)`: The first time at which a quantity reaches a value.
-    to : number [s] or `reach(…)`, optional
+        `at_event(…)`: When an event comes.
+    to : number [s] or `reach(…)` or `at_event(…)`, optional
         Its end, default the end of the motion.
         number [s]: A time.
         `reach(…)`: The first time at which a quantity reaches a value.
+        `at_event(…)`: When an event comes.
     """
     return made(WindowEnds, "window_ends", locals())
 
@@ -1726,6 +1762,19 @@ def reach(
         The value, which the quantity must cross downwards.
     """
     return made(Reach, "reach", locals())
+
+
+@checked
+def at_event(*, event: str) -> AtEvent:
+    """An event of the file. A window ends just before it or starts just after it, and a value is that just before
+    it.
+
+    Parameters
+    ----------
+    event : text
+        Its name.
+    """
+    return made(AtEvent, "at_event", locals())
 
 
 @checked
@@ -4776,10 +4825,11 @@ class functions(Kinds):
 
         Parameters
         ----------
-        at : number [s] or `reach(…)`
-            The time, or the first time at which a quantity reaches a value.
+        at : number [s] or `reach(…)` or `at_event(…)`
+            The time, the first time at which a quantity reaches a value, or an event.
             number [s]: A time.
             `reach(…)`: The first time at which a quantity reaches a value.
+            `at_event(…)`: When an event comes.
         of : one of `quantities`
             The quantity.
         """
@@ -4823,6 +4873,17 @@ class functions(Kinds):
             The barrier.
         """
         return made(Function, "functions.clearance", locals())
+
+    @staticmethod
+    @checked
+    def event_time(value: str, /) -> Function:
+        """Time at which an event of the file comes [s], by its name.
+
+        Parameters
+        ----------
+        value : text
+        """
+        return made_of(Function, "functions.event_time", value)
 
     @staticmethod
     @checked
@@ -5106,6 +5167,7 @@ class MachineKeys(Document):
         "drives",
         "couplings",
         "simulation",
+        "events",
         "structures",
         "materials",
         "load_cases",
@@ -5400,6 +5462,41 @@ class MachineKeys(Document):
             "krylov": By FGMRES, a Krylov method, with kept factors as preconditioner, for bdf and generalised_alpha.
         """
         self._set("simulation", "set_simulation", locals())
+
+    @checked
+    def add_event(
+        self,
+        name: str,
+        *,
+        when: When,
+        description: str | None = None,
+        off: Sequence[str] | None = None,
+        on: Sequence[str] | None = None,
+    ) -> Name:
+        """Adds a event.
+
+        An event that changes the machine. The bodies keep their positions; their velocities jump as by the impulses
+        of the joints that close, and the motion goes on.
+
+        Parameters
+        ----------
+        name : text
+            Its name among the `events`.
+        when : `terminal_event(…)` or `at(…)`
+            When it comes, after the event before it.
+            `terminal_event(…)`: A quantity reaches a value.
+            `at(…)`: At a time.
+        description : text, optional
+            Remark for readers of the file.
+        off : list of texts, optional
+            Names of joints, loads and drives that go off. A joint opens with its drives and the loads that act
+            through it.
+        on : list of texts, optional
+            Names of joints, loads and drives that go on. They are off before, from the start or by an event. A joint
+            closes where its bodies are then: its frame on its second body becomes that on its first one, and a rod
+            keeps the distance of its ends.
+        """
+        return Name(name, self._add("events", "event", name, keys(locals(), "name")))
 
     @checked
     def add_structure(

@@ -46,6 +46,7 @@ fn unlowered_scene<S: Scalar>(problem: &Problem, x: &[S]) -> Scene<S> {
         joint.redundant.clone_from(rows);
         joint.fit = *fit;
     }
+    phases::leave_out(&problem.written, &mut scene.model, state);
     if problem.nearest_to.is_some() {
         let distance = problem.distance_from_start(x);
         scene.functions.push(Function::OfDesign {

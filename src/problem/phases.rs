@@ -18,9 +18,10 @@ use super::Problem;
 use crate::adjoint::WeightedEnd;
 use crate::functions::{Function, Scene, turning::turns};
 use crate::integrate::Trajectory;
-use crate::math::{Scalar, Vec3};
+use crate::math::{Parameters, Scalar, Vec3};
 use crate::model::{DegreeOfFreedom, JointFrame, JointKind, Model};
 use crate::schema::Document;
+use crate::system::redundancy;
 
 /// Numbers of a body and of a joint in a state.
 const OF_BODY: usize = 13;
@@ -136,6 +137,23 @@ pub(super) fn begin<S: Scalar>(document: &Document, scene: &mut Scene<S>, state:
     let time = next();
     scene.model.begin_at(time);
     scene.duration -= time;
+}
+
+/// Leaves out the rows that are redundant in the position with which a phase begins, if joints have closed: in another
+/// position others are.
+pub(super) fn leave_out<S: Scalar>(document: &Document, model: &mut Model<S>, state: &[S]) {
+    let Some(phase) = document.phase.filter(|_| !state.is_empty()) else {
+        return;
+    };
+    let mut names = document.joints.keys();
+    if !names.any(|name| document.closed_since(name, phase).is_some()) {
+        return;
+    }
+    let mut real = model.map(&mut |x| x.re());
+    redundancy::leave_out(&mut real);
+    for (joint, real) in model.joints.iter_mut().zip(real.joints) {
+        (joint.redundant, joint.fit) = (real.redundant, real.fit);
+    }
 }
 
 /// The function that has the quantity of the event that ends a phase.

@@ -93,7 +93,7 @@ fn arms(count: usize, method: &Value) -> Value {
         "simulation": {"duration": 0.9},
         "events": {
             "stop": {"when": {"time": 0.15}, "off": ["motor"]},
-            "locks": {"when": {"measure": {"rotation": {"body": "upper", "axis": [0, 0, 1]}}, "reaches": -0.5},
+            "locks": {"when": {"measure": {"angle": {"joint": "shoulder"}}, "reaches": -0.5},
                 "on": ["lock"]},
             "free": {"when": {"time": 0.55}, "off": ["lock"]},
             "lets go": {"when": {"measure": position(json!([0, 1, 0])), "reaches": -1.0}, "off": ["elbow"]},
@@ -101,7 +101,7 @@ fn arms(count: usize, method: &Value) -> Value {
         },
         "functions": {
             "x": {"final": position(json!([1, 0, 0]))},
-            "turn": {"final": {"rotation": {"body": "lower", "axis": [0, 0, 1]}}},
+            "turn": {"final": {"angle": {"joint": "elbow"}}},
             "work": {"integral": {"energy": "kinetic"}},
             "speed": {"mean": {"speed_squared": {"body": "upper", "point": "b"}}},
             "peak": {"ks": {"rho": 2, "of": {"speed_squared": {"body": "lower"}}}},
@@ -175,8 +175,8 @@ fn a_motor_stops() {
         "functions": {"turned": {"final": {"rotation": {"body": "wheel", "axis": [0, 0, 1]}}}},
         "variables": {
             "torque": {"path": "/loads/motor/torque/magnitude"},
-            "stop": {"path": "/events/stop/when/time"},
-            "duration": {"path": "/simulation/duration"}
+            "stop": {"path": "/events/stop/when/time", "lower": 0.1},
+            "duration": {"path": "/simulation/duration", "lower": 0.1}
         }
     });
     let own = problem(&document);
@@ -229,7 +229,7 @@ fn energy_falls_where_bodies_are_gripped() {
             "time": {"event_time": "grips"}
         },
         "variables": {
-            "mass": {"path": "/bodies/runs/mass"}, "speed": {"path": "/bodies/runs/velocity/linear/0"},
+            "mass": {"path": "/bodies/runs/mass", "lower": 0.1}, "speed": {"path": "/bodies/runs/velocity/linear/0"},
             "gap": {"path": "/events/grips/when/reaches"}
         }
     });
@@ -307,14 +307,15 @@ fn equal_machines_move_alike() {
     }
     let mut swapped = base.clone();
     swapped["joints"]["lock"]["weld"]["between"] = json!(["upper", "lower"]);
-    swapped["joints"]["elbow"]["revolute"]["between"] = json!(["upper", "lower"]);
     let mut turned = base.clone();
     turn(&mut turned);
-    for (what, other) in [
+    let all = [
         ("reordered", reordered),
         ("swapped", swapped),
         ("turned", turned),
-    ] {
+        ("oblique", oblique(&base)),
+    ];
+    for (what, other) in all {
         let other = problem(&other);
         let found = simulated(&other);
         for f in whole(&own) {
@@ -326,6 +327,70 @@ fn equal_machines_move_alike() {
             );
         }
         gradients_are_exact(&other, what);
+    }
+}
+
+/// The machine as a part that is turned about an oblique axis.
+fn oblique(base: &Value) -> Value {
+    let (axis, angle) = ([1.0, 2.0, -1.5], 0.7_f64);
+    let norm = f64::hypot(f64::hypot(axis[0], axis[1]), axis[2]);
+    let e = axis.map(|x| x / norm);
+    // Rodrigues.
+    let turned = |v: [f64; 3]| {
+        let dot: f64 = (0..3).map(|i| e[i] * v[i]).sum();
+        let cross = |i: usize| e[(i + 1) % 3] * v[(i + 2) % 3] - e[(i + 2) % 3] * v[(i + 1) % 3];
+        let one = |i: usize| {
+            v[i] * angle.cos() + cross(i) * angle.sin() + e[i] * dot * (1.0 - angle.cos())
+        };
+        [one(0), one(1), one(2)]
+    };
+    let mut all = base.clone();
+    let mut part = json!({});
+    for section in ["bodies", "joints", "loads"] {
+        part[section] = base[section].clone();
+        all.as_object_mut()
+            .expect("a document")
+            .shift_remove(section);
+    }
+    all["parts"] = json!({"arms": part});
+    all["use"] = json!({"m": {"part": "arms", "turn": {"axis": axis, "angle": angle}}});
+    all["gravity"] = json!(turned([0.0, -9.81, 0.0]));
+    for key in ["events", "functions"] {
+        rename(&mut all[key], &turned);
+    }
+    // Numbers of parts are no variables of the machine, and gravity has no single component.
+    all["variables"]
+        .as_object_mut()
+        .expect("variables")
+        .retain(|_, own| {
+            let path = own["path"].as_str().expect("a path");
+            path.starts_with("/events") || path.starts_with("/simulation")
+        });
+    all
+}
+
+/// Gives directions their turned components, and names of bodies, joints and loads those of the use "m".
+fn rename(value: &mut Value, turned: &impl Fn([f64; 3]) -> [f64; 3]) {
+    match value {
+        Value::Array(all) if all.len() == 3 && all.iter().all(Value::is_number) => {
+            let v = [0, 1, 2].map(|i| all[i].as_f64().expect("a number"));
+            *value = json!(turned(v));
+        }
+        Value::Array(all) => all.iter_mut().for_each(|own| match own {
+            Value::String(name) => *name = format!("m/{name}"),
+            own => rename(own, turned),
+        }),
+        Value::Object(all) => {
+            for (key, own) in all {
+                match own {
+                    Value::String(name) if key == "body" || key == "joint" => {
+                        *name = format!("m/{name}")
+                    }
+                    own => rename(own, turned),
+                }
+            }
+        }
+        _ => {}
     }
 }
 
@@ -421,4 +486,121 @@ fn events_stop_and_start_a_controller() {
         assert!(off < 1e-9, "{name} {} {expected}", found(name));
     }
     gradients_are_exact(&problem, "controller");
+}
+
+/// At the top of a throw the height only touches its value: the time of the event has no derivative.
+#[test]
+fn an_event_that_touches_is_named() {
+    let document = json!({
+        "version": 1, "name": "throw",
+        "bodies": {"ball": {"shape": "point", "mass": 2, "velocity": {"linear": [3, 4, 0]}}},
+        "simulation": {"duration": 1},
+        "events": {"top": {"when": {
+            "measure": {"position": {"body": "ball", "direction": [0, 1, 0]}}, "reaches": 16.0 / (2.0 * 9.81)}}},
+        "functions": {"time": {"event_time": "top"}}
+    });
+    let text = failure(&document);
+    assert!(
+        text.contains("before top") && text.contains("touches"),
+        "{text}"
+    );
+}
+
+/// Every fault of an event is told at its place.
+#[test]
+fn faults_of_events_are_told() {
+    let base = arms(3, &json!({"tolerance": 1e-9}));
+    let faults: [(&str, Value, &str); 9] = [
+        (
+            "/events/stop/off",
+            json!(["moter"]),
+            "the name of a joint, load or drive",
+        ),
+        (
+            "/events/stop/off",
+            json!(["motor", "motor"]),
+            "each name once",
+        ),
+        (
+            "/events/stop/on",
+            json!(["lock"]),
+            "what is off before this event",
+        ),
+        (
+            "/events/free/off",
+            json!(["motor"]),
+            "what is on before this event",
+        ),
+        (
+            "/events/stop/when/time",
+            json!(0.95),
+            "a time before the end at 0.9 s",
+        ),
+        (
+            "/events/free/when/time",
+            json!(0.1),
+            "a time after that of the event before it",
+        ),
+        (
+            "/functions/peak/ks/during",
+            json!([0.1, 0.2]),
+            "of the whole motion or between events",
+        ),
+        (
+            "/functions/early/value/at/event",
+            json!("stopp"),
+            "the name of an event",
+        ),
+        (
+            "/functions/locks at",
+            json!({"event_time": "lock"}),
+            "the name of an event",
+        ),
+    ];
+    for (place, value, expected) in faults {
+        let mut document = base.clone();
+        let (parent, key) = place.rsplit_once('/').expect("a pointer");
+        document.pointer_mut(parent).expect("there")[key] = value;
+        let Err(found) = Problem::parse(&document.to_string(), "arms.json", &[]) else {
+            panic!("{place} is no fault");
+        };
+        assert!(found.to_string().contains(expected), "{place}: {found}");
+    }
+    let mut rests = base.clone();
+    rests["analysis"] = json!("rest");
+    rests
+        .as_object_mut()
+        .expect("a document")
+        .shift_remove("simulation");
+    let Err(found) = Problem::parse(&rests.to_string(), "arms.json", &[]) else {
+        panic!("it rests");
+    };
+    assert!(
+        found.to_string().contains("events of a machine at rest"),
+        "{found}"
+    );
+}
+
+/// What opens has no reaction, and a load that is off no force and no energy.
+#[test]
+fn what_is_off_bears_nothing() {
+    let mut document = arms(5, &json!({"tolerance": 1e-9}));
+    document["functions"] = json!({
+        "elbow": {"final": {"joint_force": {"joint": "elbow", "direction": [0, 1, 0]}}},
+        "spring": {"final": {"spring_force": {"load": "spring"}}},
+        "before": {"value": {"at": {"event": "lets go"}, "of": {"joint_force": {"joint": "elbow", "direction": [0, 1, 0]}}}},
+        "pulls": {"value": {"at": {"event": "snaps"}, "of": {"spring_force": {"load": "spring"}}}}
+    });
+    let own = problem(&document);
+    let at = simulated(&own);
+    for (name, bears) in [
+        ("elbow", false),
+        ("spring", false),
+        ("before", true),
+        ("pulls", true),
+    ] {
+        let value = at.value(number(&own, name));
+        assert_eq!(value.abs() > 0.1, bears, "{name}: {value}");
+        assert!(bears || value == 0.0, "{name}: {value}");
+    }
 }
