@@ -3,7 +3,7 @@
 use crate::driver::Simulation;
 use crate::driver::ends::Ends;
 use crate::functions::histories::history;
-use crate::plots::{EnergyRun, History as Curves, Limit, Motion};
+use crate::plots::{EnergyRun, History as Curves, Lapse, Limit, Motion};
 use crate::problem::{Drawing, Problem};
 
 /// A design in all phases.
@@ -58,6 +58,7 @@ pub(super) fn lapse(design: &Design, of: impl Fn(&Simulation, &Drawing) -> Motio
     let whole: f64 = design.phases.iter().map(|(_, own)| duration(own)).sum();
     let mut all = Motion {
         title: design.title.to_owned(),
+        lapse: Lapse::Time,
         bodies: Vec::new(),
         connectors: Vec::new(),
         traces: Vec::new(),
