@@ -6,7 +6,6 @@
 //! by [`Composition`](super::Composition).
 
 use super::composing::{Composing, value_in_case};
-use super::events;
 use super::fault::Faults;
 use super::finding::Finding;
 use super::overrides::Override;
@@ -21,7 +20,6 @@ use crate::schema::{self, Analysis};
 use rayon::prelude::*;
 use serde_json::{Value, json};
 use std::collections::HashMap;
-use std::path::Path;
 use std::sync::Arc;
 
 /// A case.
@@ -111,36 +109,11 @@ impl Problem {
     }
 }
 
-/// Reads a problem file.
-pub(super) fn load(path: &Path, overrides: &[Override]) -> Result<Problem, Faults> {
-    let (text, file) = read::text_of(path)?;
-    parse(&text, &file, overrides)
-}
-
-/// Reads a problem from its text.
-pub(super) fn parse(written: &str, file: &str, overrides: &[Override]) -> Result<Problem, Faults> {
-    let (document, source, findings) = read::document(written, file, overrides)?;
-    let is_divided = ["cases", "events"]
-        .iter()
-        .any(|key| document.get(key).is_some());
-    let has_events = (document["events"].as_object()).is_some_and(|all| !all.is_empty());
-    let of_parts = is_divided.then(|| source.clone());
-    let phase = has_events.then_some(0);
-    let (problem, stated) = read::single(document, source, findings, (file, overrides), phase)?;
-    if let (true, Some(source)) = (has_events, &of_parts) {
-        return events::complete(problem, source, (file, overrides));
-    }
-    match (stated, of_parts) {
-        (Some(stated), Some(source)) => complete(problem, stated, &source, (file, overrides)),
-        _ => Ok(problem),
-    }
-}
-
 /// The problem of all cases; `base` is that of the file without them, `source` the text and the places of its entries.
 ///
 /// # Errors
 /// The faults of a case, or of functions over cases.
-fn complete(
+pub(super) fn complete(
     mut base: Problem,
     stated: Stated,
     source: &Source,

@@ -37,6 +37,7 @@ mod hinge;
 mod holds;
 mod instances;
 mod joints;
+mod load;
 mod loads;
 mod mass;
 mod measurements;
@@ -251,7 +252,7 @@ impl Problem {
     /// # Errors
     /// All faults that are found, each with its place.
     pub fn load(path: &Path, overrides: &[Override]) -> Result<Self, Faults> {
-        cases::load(path, overrides)
+        load::load(path, overrides)
     }
 
     /// Reads a problem from its text; `file` is its name in faults.
@@ -259,7 +260,7 @@ impl Problem {
     /// # Errors
     /// All faults that are found, each with its place.
     pub fn parse(text: &str, file: &str, overrides: &[Override]) -> Result<Self, Faults> {
-        cases::parse(text, file, overrides)
+        load::parse(text, file, overrides)
     }
 
     /// Whether a body has finite elements.
