@@ -25,7 +25,8 @@ pub fn controller<S: Scalar>(
     written: &Written,
 ) -> Controller<S> {
     if is_held(document, written) {
-        return idle(coordinate(document, assembly, written));
+        let followed = reference(document, assembly, &written.reference);
+        return idle(coordinate(document, assembly, written), followed);
     }
     let get = |quantity: &Quantity| assembly.quantity(quantity);
     let some = |quantity: &Option<Quantity>| quantity.as_ref().map(get);
@@ -92,12 +93,12 @@ pub fn is_held(document: &Document, written: &Written) -> bool {
     document.is_rest() && written.integral.is_some()
 }
 
-/// A controller without effort.
-fn idle<S: Scalar>(coordinate: Coordinate<S>) -> Controller<S> {
+/// A controller without effort, which tells its error.
+fn idle<S: Scalar>(coordinate: Coordinate<S>, reference: TimeFunction<S>) -> Controller<S> {
     Controller {
         feedback: vec![Feedback {
             coordinate,
-            reference: TimeFunction::constant(S::zero()),
+            reference,
             proportional: S::zero(),
             derivative: S::zero(),
         }],

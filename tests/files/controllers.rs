@@ -35,7 +35,7 @@ fn disk(controller: Value, duration: f64) -> Value {
             "error": final_of(json!({"tracking_error": {"load": "servo"}}))
         },
         "variables": {
-            "proportional": {"path": "/loads/servo/controller/proportional", "lower": 0.1, "upper": 100}
+            "inertia": {"path": "/bodies/disk/inertia/zz", "lower": 0.1, "upper": 1.9}
         }
     })
 }
@@ -445,7 +445,8 @@ fn held(controller: Value) -> Value {
         "loads": {"servo": {"controller": own}},
         "functions": {
             "angle": final_of(json!({"angle": {"joint": "pin"}})),
-            "effort": final_of(json!({"effort": {"load": "servo"}}))
+            "effort": final_of(json!({"effort": {"load": "servo"}})),
+            "error": final_of(json!({"tracking_error": {"load": "servo"}}))
         },
         "variables": {
             "mass": {"path": "/bodies/bar/mass", "lower": 1, "upper": 5},
@@ -469,6 +470,7 @@ fn motors_hold_a_pendulum_at_rest() {
     let file = held(own);
     let found = values(&file);
     assert_near(found[0], 0.3, 1e-12);
+    assert_near(found[2], 0.0, 1e-9);
     assert_near(found[1], weight * 0.3_f64.cos(), 1e-10);
 }
 

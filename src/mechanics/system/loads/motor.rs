@@ -90,7 +90,7 @@ impl<S: Scalar> Limited<S> {
         let line = own.line.iter_mut().flatten();
         let some = own.effort.iter_mut().chain(line).chain(&mut own.power);
         let all = [&mut self.by_demand, &mut self.by_rate, &mut own.ratio];
-        all.into_iter().chain(some).for_each(|x| *x = *x * by);
+        all.into_iter().chain(some).for_each(|x| *x *= by);
     }
 }
 
