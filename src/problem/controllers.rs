@@ -3,7 +3,7 @@
 //! At rest a lag has settled, and an integral is whatever leaves no error: the joint is held at its reference as by a drive,
 //! whose torque or force is the effort.
 
-use super::joints::course;
+use super::courses::course;
 use super::loads::{course as magnitude, dof, ends, joint};
 use super::placement::Assembly;
 use crate::math::{Scalar, Vec3};

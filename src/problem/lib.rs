@@ -15,6 +15,7 @@ mod composed;
 mod composing;
 mod controllers;
 mod couplings;
+mod courses;
 mod data_file;
 mod data_text;
 mod derived;
