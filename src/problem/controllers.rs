@@ -4,7 +4,7 @@
 //! whose torque or force is the effort.
 
 use super::courses::course;
-use super::loads::{course as magnitude, dof, ends, joint};
+use super::load_ends::{course as magnitude, dof, ends, joint};
 use super::placement::Assembly;
 use crate::math::{Scalar, Vec3};
 use crate::model::controller::{Controller, Coordinate, Feedback, Integral, Lag, Limits, Weight};

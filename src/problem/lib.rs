@@ -37,6 +37,7 @@ mod hinge;
 mod holds;
 mod instances;
 mod joints;
+mod load_ends;
 mod loads;
 mod mass;
 mod measurements;
