@@ -2,7 +2,7 @@
 
 use super::drives::Following;
 use super::joints::Ends;
-use super::loads::{EffortInTime, Motion};
+use super::magnitudes::{EffortInTime, Motion};
 use super::mechanics::Point;
 use crate::quantity::Quantity;
 use schemars::JsonSchema;

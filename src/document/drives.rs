@@ -1,6 +1,6 @@
 //! Drives in a file.
 
-use super::loads::Interpolation;
+use super::magnitudes::Interpolation;
 use crate::quantity::Quantity;
 use schemars::JsonSchema;
 use serde::Deserialize;

@@ -13,6 +13,7 @@ pub mod instants;
 pub mod joints;
 pub mod length_unit;
 pub mod loads;
+pub mod magnitudes;
 pub mod measured;
 pub mod mechanics;
 pub mod misfit;

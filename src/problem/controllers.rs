@@ -3,8 +3,8 @@
 //! At rest a lag has settled, and an integral is whatever leaves no error: the joint is held at its reference as by a drive,
 //! whose torque or force is the effort.
 
-use super::joints::course;
-use super::loads::{course as magnitude, dof, ends, joint};
+use super::courses::course;
+use super::load_ends::{course as magnitude, dof, ends, joint};
 use super::placement::Assembly;
 use crate::math::{Scalar, Vec3};
 use crate::model::controller::{Controller, Coordinate, Feedback, Integral, Lag, Limits, Weight};
@@ -25,7 +25,8 @@ pub fn controller<S: Scalar>(
     written: &Written,
 ) -> Controller<S> {
     if is_held(document, written) {
-        return idle(coordinate(document, assembly, written));
+        let followed = reference(document, assembly, &written.reference);
+        return idle(coordinate(document, assembly, written), followed);
     }
     let get = |quantity: &Quantity| assembly.quantity(quantity);
     let some = |quantity: &Option<Quantity>| quantity.as_ref().map(get);
@@ -93,13 +94,13 @@ pub fn is_held(document: &Document, written: &Written) -> bool {
     document.is_rest() && written.integral.is_some()
 }
 
-/// A controller without effort.
-fn idle<S: Scalar>(coordinate: Coordinate<S>) -> Controller<S> {
+/// A controller without effort, which tells its error.
+fn idle<S: Scalar>(coordinate: Coordinate<S>, reference: TimeFunction<S>) -> Controller<S> {
     Controller {
         acts: true,
         feedback: vec![Feedback {
             coordinate,
-            reference: TimeFunction::constant(S::zero()),
+            reference,
             proportional: S::zero(),
             derivative: S::zero(),
         }],

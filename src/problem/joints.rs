@@ -1,17 +1,14 @@
 //! Makes the joints and drives of a model from those of a file.
 
 use super::controllers;
+use super::courses::course;
 use super::placement::{Assembly, GROUND, split_location};
 use crate::math::scalar::{length, unit};
 use crate::math::{Scalar, Vec3};
-use crate::model::{
-    DegreeOfFreedom, Drive, Fit, Joint, JointFrame, JointKind, SCurve, Smoothness, TimeFunction,
-};
-use crate::quantity::Quantity;
+use crate::model::{DegreeOfFreedom, Drive, Fit, Joint, JointFrame, JointKind, TimeFunction};
 use crate::schema::Document;
 use crate::schema::drives::{Drive as WrittenDrive, TimeFunction as Written};
 use crate::schema::joints::{Joint as WrittenJoint, JointPlace};
-use crate::schema::loads::Interpolation;
 use crate::schema::mechanics::Shape;
 
 /// The joints of a checked document with their drives, in its order.
@@ -165,36 +162,6 @@ pub(super) fn drives<S: Scalar>(
         .collect();
     all.extend(controllers::held_at_rest(document, assembly, name));
     all
-}
-
-/// A motion in time.
-pub(super) fn course<S: Scalar>(assembly: &Assembly<S>, written: Written) -> TimeFunction<S> {
-    let get = |quantity: &Quantity| assembly.quantity(quantity);
-    match written {
-        Written::Rate(rate) => TimeFunction::Polynomial(vec![S::zero(), get(rate)]),
-        Written::Polynomial(coefficients) => {
-            TimeFunction::Polynomial(coefficients.iter().map(get).collect())
-        }
-        Written::Harmonic([mean, amplitude, frequency, phase]) => TimeFunction::Harmonic {
-            mean: get(mean),
-            amplitude: get(amplitude),
-            frequency: get(frequency),
-            phase: get(phase),
-        },
-        Written::SCurve([from, to, start, speed, acceleration]) => TimeFunction::SCurve(SCurve {
-            from: get(from),
-            to: get(to),
-            start: get(start),
-            speed: get(speed),
-            acceleration: get(acceleration),
-        }),
-        Written::Table(times, values, interpolation) => TimeFunction::Table {
-            interpolation: Interpolation::of(interpolation),
-            smoothness: Smoothness::Motion,
-            times: times.iter().map(|&t| t.into()).collect(),
-            values: values.iter().map(get).collect(),
-        },
-    }
 }
 
 /// Whether a joint of this kind may act on a point mass: it needs no extent and no rotation.

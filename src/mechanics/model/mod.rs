@@ -6,6 +6,7 @@
 
 pub mod axes;
 pub mod contact;
+mod controlled;
 pub mod controller;
 pub mod coupling;
 pub mod distributed;

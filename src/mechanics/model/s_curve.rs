@@ -8,7 +8,6 @@
 //! The speed v is the given one, or √(A D / 2) if the way D is too short for it. Position, speed, acceleration and jerk are
 //! continuous. All instants follow from the numbers, so they have derivatives.
 
-use super::time_function::held;
 use crate::math::{Scalar, parameters};
 use std::f64::consts::PI;
 
@@ -57,6 +56,7 @@ impl<S: Scalar> SCurve<S> {
         let sign = (self.to - self.from).re().signum();
         let t = time - self.start;
         let left = whole - t;
+        let held = |x: S| [x, S::zero(), S::zero(), S::zero()];
         if t.re() <= 0.0 {
             return held(self.from);
         }

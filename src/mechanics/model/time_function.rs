@@ -217,8 +217,7 @@ impl TimeFunction<f64> {
     }
 }
 
-/// A constant with its derivatives.
-pub(super) fn held<S: Scalar>(value: S) -> [S; 4] {
+fn held<S: Scalar>(value: S) -> [S; 4] {
     [value, S::zero(), S::zero(), S::zero()]
 }
 

@@ -11,6 +11,14 @@ use crate::schema::joints::Ends;
 use crate::schema::loads::{Bushing, Contact, Load, Motion, Stop, Surface, TimeFunction};
 use crate::schema::measured::JointReaction;
 
+/// The joint of a load and its motion, or its two bodies and their points.
+type ActedOn<'a> = (
+    &'a Option<String>,
+    Option<Motion>,
+    &'a Option<[String; 2]>,
+    &'a Option<Ends>,
+);
+
 impl Checker<'_> {
     pub(super) fn loads(&mut self) {
         let document = self.document;
@@ -273,12 +281,7 @@ impl Checker<'_> {
     pub(super) fn joint_or_distance(
         &mut self,
         pointer: &str,
-        (joint, motion, between, at): (
-            &Option<String>,
-            Option<Motion>,
-            &Option<[String; 2]>,
-            &Option<Ends>,
-        ),
+        (joint, motion, between, at): ActedOn,
         (done, does): (&str, &str),
     ) {
         use JointKind::{Cylindrical, Planar, Prismatic, Revolute};
