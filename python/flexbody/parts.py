@@ -5543,7 +5543,7 @@ class case_combinations(Kinds):
     """What is taken of the values f_c of a function in several cases, with weights w_c."""
 
     sum: Final[Literal["sum"]] = "sum"
-    """Their sum Σ w_c f_c."""
+    """Their sum Σ w_c f_c. A weight may be negative: 1 and −1 give a difference of two cases."""
 
     mean: Final[Literal["mean"]] = "mean"
     """Their mean m = Σ w_c f_c / Σ w_c."""
@@ -6119,7 +6119,8 @@ class MachineKeys(Document):
         description : text, optional
             Remark for readers of the file.
         path : text, optional
-            JSON Pointer to the number, such as /bodies/arm/mass.
+            JSON Pointer to the number, such as /bodies/arm/mass; or to a list, each number of which becomes a
+            variable `name[0]`, `name[1]`, … with these bounds.
         paths : list of texts, optional
             JSON Pointers to several numbers with one value, instead of `path`.
         lower : number, optional
