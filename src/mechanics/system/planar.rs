@@ -159,9 +159,10 @@ impl<S: Scalar> PlanarJoints<S> {
     pub fn of(model: &Model<S>) -> Option<Self> {
         let mut plane = None;
         let mut planes = Vec::with_capacity(model.bodies.len() + 1);
+        let states = model.states();
         for (i, body) in model.bodies.iter().enumerate() {
             // No joint holds it.
-            if model.holds_angles(i) {
+            if model.is_counter(i) || states.contains(&i) {
                 planes.push(BodyPlane {
                     along: [Vec3::x(), Vec3::y()],
                     normal: Vec3::z(),
