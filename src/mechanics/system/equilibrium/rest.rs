@@ -249,22 +249,11 @@ impl Solver<'_> {
         let mut at = placed.clone();
         at.rate = stiffest;
         self.factorise_at(factors, &at)?;
-        let soft = self.soft_motions(factors, &at)?;
-        let motions = self.layout.at_rest(&at.q);
-        let along = self.layout.along(self.model, self.given, &at);
-        let mut softest = UNLOADED * stiffest;
-        for (_, y) in soft.into_iter().filter(|own| own.0 > ELASTIC * stiffest) {
-            // A free motion may have a trace of stiff ones.
-            let y = self.purified(factors, &motions, y);
-            let mut shape = y.clone();
-            shape.resize(self.layout.order(), 0.0);
-            let stiffness = dot(&y, &along.product(&shape)[..y.len()]);
-            let rate = stiffness / dot(&y, &self.metric_product(&motions, &y));
-            if rate > ELASTIC * stiffest {
-                softest = softest.min(rate);
-            }
-        }
-        Ok(Some(softest))
+        let soft = self.soft_motions(factors, &at)?.into_iter();
+        let elastic = soft
+            .map(|(rate, _)| rate)
+            .filter(|&rate| rate > ELASTIC * stiffest);
+        Ok(Some(elastic.fold(UNLOADED * stiffest, f64::min)))
     }
 
     /// Motions y with K y = λ M̃ y on G y = 0 and their λ, those with λ below the least σ, with the factors of a solution.

@@ -10,8 +10,6 @@ const CONVERGED: f64 = 1e-2;
 /// Most iterations for the eigenvalues of a small matrix, and what is zero there, beside its neighbours.
 const SWEEPS: usize = 10_000;
 const ROUNDINGS: [f64; 3] = [f64::EPSILON, 1e-10, 1e-6];
-/// Searches in a row, each from another vector, that end without a new one where there is none: round-off may spoil one.
-const SEARCHES: usize = 2;
 /// A vector lies in the space of those before if this part of it is left; and so does one that is found again.
 const DEPENDENT: f64 = 1e-8;
 const DISTINCT: f64 = 0.1;
@@ -28,11 +26,8 @@ pub(super) fn ritz_vectors(
     let mut all: Vec<(f64, Vec<f64>)> = Vec::new();
     let mut known: Vec<[Vec<f64>; 2]> = Vec::new();
     // A Krylov space has one copy of an eigenvalue. Others are in the space without it.
-    let (mut seed, mut missed) = (1.0, 0);
-    while known.len() < independent && missed < SEARCHES {
-        let space = (&known[..], n, seed);
-        let found = one_of_each(&mut product, &weighted, space, (independent, &counts))?;
-        seed += 1.0;
+    while known.len() < independent {
+        let found = one_of_each(&mut product, &weighted, (&known, n), (independent, &counts))?;
         let before = known.len();
         for (value, mut y) in found {
             let length = dot(&y, &weighted(&y)).sqrt();
@@ -44,10 +39,9 @@ pub(super) fn ritz_vectors(
                 all.push((value, y));
             }
         }
-        missed = match known.len() == before {
-            true => missed + 1,
-            false => 0,
-        };
+        if known.len() == before {
+            break;
+        }
     }
     Some(all)
 }
@@ -70,7 +64,7 @@ fn without(known: &[[Vec<f64>; 2]], from: &mut [f64]) -> Vec<f64> {
 fn one_of_each(
     full: &mut impl FnMut(&[f64]) -> Vec<f64>,
     weighted: &impl Fn(&[f64]) -> Vec<f64>,
-    (known, n, seed): (&[[Vec<f64>; 2]], usize, f64),
+    (known, n): (&[[Vec<f64>; 2]], usize),
     (independent, counts): (usize, &impl Fn(f64, f64) -> bool),
 ) -> Option<Vec<(f64, Vec<f64>)>> {
     let mut product = |y: &[f64]| {
@@ -79,6 +73,7 @@ fn one_of_each(
         out
     };
     // Any vector has a part of each eigenvector.
+    let seed = 1.0 + known.len() as f64;
     let any: Vec<f64> = (0..n)
         .map(|i| (seed * (1.0 + i as f64).sqrt()).fract() - 0.5)
         .collect();
