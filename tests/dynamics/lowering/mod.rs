@@ -137,7 +137,7 @@ const BDF: Method = Method::Bdf {
 /// (`benchmarks.rs` runs them through it with reductions).
 #[test]
 fn every_problem_moves_the_same_lowered() {
-    let all: [(&str, bool, &[Method], f64); 23] = [
+    let all: [(&str, bool, &[Method], f64); 22] = [
         ("bump_stop", true, &[Method::Dop853, RADAU], 1e-10),
         ("cart_pole", true, &[Method::Dop853, RADAU], 1e-10),
         ("desk_lamp", true, &[Method::Dop853], 1e-11),
@@ -145,7 +145,6 @@ fn every_problem_moves_the_same_lowered() {
         ("fit_pendulum", true, &[Method::Dop853, RADAU], 1e-11),
         ("planetary_gear", true, &[Method::Dop853], 1e-9),
         ("quadruped", false, &[Method::Dop853, RADAU], 1e-11),
-        ("robot_arm", true, &[RADAU], 1e-9),
         ("straight_line", true, &[Method::Dop853, RADAU], 1e-11),
         ("trebuchet", true, &[Method::Dop853, RADAU, BDF], 1e-11),
         (
