@@ -159,7 +159,8 @@ mod tests {
                         Complex64::new(rate, step(1)),
                     ];
                     let exact = limited(&moved, inputs[0], inputs[1]).effort.im / COMPLEX_STEP;
-                    let near = (given - exact).abs() <= 1e-12 * exact.abs().max(1e-3);
+                    // Terms of the size of the effort may cancel.
+                    let near = (given - exact).abs() <= 1e-12 * exact.abs().max(0.1);
                     assert!(near, "{limits:?} {demand} {rate} {wanted}: {given} {exact}");
                 }
             }
