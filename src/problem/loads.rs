@@ -47,6 +47,16 @@ fn kind<S: Scalar>(
             magnitude: course(assembly, magnitude),
         })
     };
+    let dead = |name: &str, (direction, own): (&Vector, WrittenAxes), magnitude: Written| {
+        let shares = dead_shares(&elements(document, name), written);
+        let shares = shares.expect("sets of loads are checked when a problem is read");
+        let spread = Spread::Dead {
+            shares: shares.into_iter().collect(),
+            direction: unit(assembly.ground(direction)),
+            axes: axes(own),
+        };
+        distributed(name, spread, magnitude)
+    };
     match written {
         WrittenLoad::Force(force) => {
             let pose = assembly.pose(&force.body);
@@ -150,32 +160,17 @@ fn kind<S: Scalar>(
             distributed(&load.body, spread, load.pressure.parts())
         }
         WrittenLoad::Area(load) => {
-            let spread = dead(
-                document,
-                assembly,
-                written,
-                (&load.body, &load.direction, load.axes),
-            );
-            distributed(&load.body, spread, load.magnitude.parts())
+            let along = (&load.direction, load.axes);
+            dead(&load.body, along, load.magnitude.parts())
         }
         WrittenLoad::Edge(load) => {
-            let spread = dead(
-                document,
-                assembly,
-                written,
-                (&load.body, &load.direction, load.axes),
-            );
-            distributed(&load.body, spread, load.magnitude.parts())
+            let along = (&load.direction, load.axes);
+            dead(&load.body, along, load.magnitude.parts())
         }
         WrittenLoad::Controller(own) => LoadKind::Controller(controller(document, assembly, own)),
         WrittenLoad::Line(load) => {
-            let spread = dead(
-                document,
-                assembly,
-                written,
-                (&load.body, &load.direction, load.axes),
-            );
-            distributed(&load.body, spread, load.magnitude.parts())
+            let along = (&load.direction, load.axes);
+            dead(&load.body, along, load.magnitude.parts())
         }
     }
 }
@@ -262,22 +257,6 @@ fn elements(document: &Document, body: &str) -> Arc<Prepared> {
     let own = document.bodies[body].elements.as_ref();
     let own = own.expect("bodies of distributed loads are checked when a problem is read");
     prepared(document, own)
-}
-
-/// A load in a fixed direction.
-fn dead<S: Scalar>(
-    document: &Document,
-    assembly: &Assembly<S>,
-    written: &WrittenLoad,
-    (body, direction, own): (&str, &Vector, WrittenAxes),
-) -> Spread<S> {
-    let shares = dead_shares(&elements(document, body), written);
-    let shares = shares.expect("sets of loads are checked when a problem is read");
-    Spread::Dead {
-        shares: shares.into_iter().collect(),
-        direction: unit(assembly.ground(direction)),
-        axes: axes(own),
-    }
 }
 
 fn axes(written: WrittenAxes) -> Axes {

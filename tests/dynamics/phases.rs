@@ -2,6 +2,7 @@
 //! of equal machines, energy in jumps, and events that do not come.
 
 use crate::reference::documents::problem;
+use crate::reference::gradients::gradients_of_expressions_are_exact as gradients_are_exact;
 use flexbody_driver::analysed::InCases;
 use flexbody_driver::{Simulated, Simulation, check};
 use flexbody_problem::Problem;
@@ -37,30 +38,6 @@ fn jumps(at: &Simulated) -> Vec<[f64; 2]> {
         _ => None,
     });
     own.collect()
-}
-
-/// Asserts that all derivatives of functions of the whole motion agree with the complex step to 1e-12 of the function's
-/// gradient, each variable in its scale.
-fn gradients_are_exact(problem: &Problem, context: &str) {
-    let found =
-        check(problem, &problem.start()).unwrap_or_else(|failure| panic!("{context}: {failure}"));
-    let scaled = |i: usize, value: f64| value * problem.variables[i].scale;
-    for f in whole(problem) {
-        let of: Vec<_> = found.iter().filter(|d| d.function == f).collect();
-        assert_eq!(of.len(), problem.variables.len());
-        let size = of
-            .iter()
-            .fold(0.0_f64, |m, d| m.hypot(scaled(d.variable, d.complex_step)));
-        assert!(size > 0.0, "{context}: {}", problem.function_names[f]);
-        for d in of {
-            let off = scaled(d.variable, d.adjoint - d.complex_step).abs() / size;
-            let names = (
-                &problem.function_names[f],
-                &problem.variables[d.variable].name,
-            );
-            assert!(off <= 1e-12, "{context} {names:?}: {off:e} {d:?}");
-        }
-    }
 }
 
 /// A double pendulum with a motor, wind and a spring. Five events: the motor stops at a time, the elbow locks at an angle, it
@@ -157,7 +134,7 @@ fn gradients_through_events_are_exact_by_every_method() {
     for method in &methods {
         for count in [1, 2, 5] {
             let own = problem(&arms(count, method));
-            gradients_are_exact(&own, &format!("{count} events by {method}"));
+            gradients_are_exact(&own, &json!(format!("{count} events by {method}")));
         }
     }
 }
@@ -245,7 +222,7 @@ fn energy_falls_where_bodies_are_gripped() {
         (before - 9.0).abs() < 1e-12 && (after - 4.5).abs() < 1e-12,
         "{before} {after}"
     );
-    gradients_are_exact(&own, "grip");
+    gradients_are_exact(&own, &json!("grip"));
 }
 
 /// No jump gains energy, and where joints only open there is none.
@@ -326,7 +303,7 @@ fn equal_machines_move_alike() {
                 "{what} {name}: {a} {b}"
             );
         }
-        gradients_are_exact(&other, what);
+        gradients_are_exact(&other, &json!(what));
     }
 }
 
@@ -485,7 +462,7 @@ fn events_stop_and_start_a_controller() {
         let off = (found(name) - expected).abs();
         assert!(off < 1e-9, "{name} {} {expected}", found(name));
     }
-    gradients_are_exact(&problem, "controller");
+    gradients_are_exact(&problem, &json!("controller"));
 }
 
 /// At the top of a throw the height only touches its value: the time of the event has no derivative.

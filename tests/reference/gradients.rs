@@ -8,25 +8,43 @@ use serde_json::Value;
 /// function's gradient, whose entries are multiplied by their variables. `context` names the case.
 pub fn gradients_are_exact(problem: &Problem, context: &Value) {
     let sizes: Vec<f64> = problem.variables.iter().map(|v| v.start.abs()).collect();
-    gradients_agree(problem, (&problem.start(), &sizes), context);
+    let all = 0..problem.function_names.len();
+    gradients_agree(problem, all, (&problem.start(), &sizes), context);
 }
 
 /// The same at the design `x`, for entries multiplied by the scales of their variables.
 pub fn scaled_gradients_are_exact(problem: &Problem, x: &[f64], context: &Value) {
     let scales: Vec<f64> = problem.variables.iter().map(|v| v.scale).collect();
-    gradients_agree(problem, (x, &scales), context);
+    gradients_agree(
+        problem,
+        0..problem.function_names.len(),
+        (x, &scales),
+        context,
+    );
 }
 
-fn gradients_agree(problem: &Problem, (x, sizes): (&[f64], &[f64]), context: &Value) {
-    let found = check(problem, x).unwrap_or_else(|failure| panic!("{failure}"));
+/// The same at the start, for the functions that expressions of others give, as those of all phases of a motion.
+pub fn gradients_of_expressions_are_exact(problem: &Problem, context: &Value) {
+    let scales: Vec<f64> = problem.variables.iter().map(|v| v.scale).collect();
+    let own = problem.composition.first..problem.function_names.len();
+    gradients_agree(problem, own, (&problem.start(), &scales), context);
+}
+
+fn gradients_agree(
+    problem: &Problem,
+    which: std::ops::Range<usize>,
+    (x, sizes): (&[f64], &[f64]),
+    context: &Value,
+) {
+    let found = check(problem, x).unwrap_or_else(|failure| panic!("{context}: {failure}"));
     let (functions, variables) = (problem.function_names.len(), problem.variables.len());
     assert_eq!(found.len(), functions * variables);
-    for f in 0..functions {
+    for f in which {
         let of: Vec<_> = found.iter().filter(|d| d.function == f).collect();
         let gradient = of
             .iter()
             .fold(0.0_f64, |m, d| m.hypot(d.complex_step * sizes[d.variable]));
-        assert!(gradient > 0.0);
+        assert!(gradient > 0.0, "{context}: {}", problem.function_names[f]);
         for d in of {
             let off = ((d.adjoint - d.complex_step) * sizes[d.variable]).abs() / gradient;
             assert!(off <= 1e-12, "{context} {d:?}: {off:e}");

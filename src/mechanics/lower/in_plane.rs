@@ -271,6 +271,13 @@ impl Plane {
                 Axes::Ground => turned.ground,
                 Axes::Body => turned.normals[*body],
             };
+            // The part in the plane of the axis about which a joint turns.
+            let tilt = |joint: usize| {
+                let joint = &model.joints[joint];
+                let n = turned.normals[joint.body_a];
+                let e = &joint.frame_a.axes[2];
+                e - n * n.dot(e)
+            };
             match &load.kind {
                 LoadKind::Force {
                     body,
@@ -310,10 +317,7 @@ impl Plane {
                     dof: DegreeOfFreedom::Rotation,
                     ..
                 } => {
-                    let joint = &model.joints[*joint];
-                    let n = turned.normals[joint.body_a];
-                    let e = &joint.frame_a.axes[2];
-                    examiner.vanishes((e - n * n.dot(e)).as_slice(), 1.0, what);
+                    examiner.vanishes(tilt(*joint).as_slice(), 1.0, what);
                 }
                 LoadKind::Contact(own) => {
                     if let Some(direction) = own.surface.direction() {
@@ -333,10 +337,7 @@ impl Plane {
                                 dof: DegreeOfFreedom::Rotation,
                                 ..
                             } => {
-                                let joint = &model.joints[*joint];
-                                let n = turned.normals[joint.body_a];
-                                let e = &joint.frame_a.axes[2];
-                                examiner.vanishes((e - n * n.dot(e)).as_slice(), 1.0, what);
+                                examiner.vanishes(tilt(*joint).as_slice(), 1.0, what);
                             }
                             Coordinate::Joint {
                                 dof: DegreeOfFreedom::Translation,

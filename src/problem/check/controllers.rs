@@ -3,7 +3,7 @@
 use super::Checker;
 use crate::finding::Finding;
 use crate::model::JointKind;
-use crate::pointer::{advice, join};
+use crate::pointer::join;
 use crate::schema::controllers::{Controller, Reference};
 use crate::schema::functions::{Function, OfMotion};
 use crate::schema::loads::Load;
@@ -104,19 +104,8 @@ impl Checker<'_> {
 
     /// Checks that a load is a controller.
     pub(super) fn controller_of(&mut self, pointer: &str, name: &str) {
-        let loads = &self.document.loads;
         let fits = |load: &Load| matches!(load, Load::Controller(_));
-        if loads.get(name).is_some_and(fits) || self.damage.holds("loads", name) {
-            return;
-        }
-        let suitable = loads.iter().filter(|(_, load)| fits(load));
-        let names: Vec<&str> = suitable.map(|(name, _)| name.as_str()).collect();
-        let hint = match names.is_empty() {
-            true => Some("there is none".to_owned()),
-            false => advice(name, "such loads", names),
-        };
-        let place = join(pointer, "load");
         let expected = "the name of a load that is a controller";
-        self.fault(Finding::new(place, format!("\"{name}\""), expected).hint(hint));
+        self.load_of(pointer, name, fits, expected);
     }
 }

@@ -243,20 +243,13 @@ impl Checker<'_> {
             | Load::Controller(_)
             | Load::Line(_) => false,
         };
-        let loads = &self.document.loads;
-        if loads.get(name).is_some_and(fits) || self.damage.holds("loads", name) {
-            return;
-        }
         let what = ["spring", "torsion spring"][usize::from(torsion)];
-        let suitable = loads.iter().filter(|(_, load)| fits(load));
-        let names: Vec<&str> = suitable.map(|(name, _)| name.as_str()).collect();
-        let hint = match names.is_empty() {
-            true => Some("there is none".to_owned()),
-            false => advice(name, "such loads", names),
-        };
-        let place = join(pointer, "load");
-        let expected = format!("the name of a load that is a {what}");
-        self.fault(Finding::new(place, format!("\"{name}\""), expected).hint(hint));
+        self.load_of(
+            pointer,
+            name,
+            fits,
+            &format!("the name of a load that is a {what}"),
+        );
     }
 
     /// Checks a stop: what it stops, and its limits.
@@ -351,13 +344,28 @@ impl Checker<'_> {
 
     /// Checks that a load is a stop or a contact.
     pub(super) fn stop_of(&mut self, pointer: &str, name: &str, friction: bool) {
-        let loads = &self.document.loads;
         let fits = |load: &Load| match load {
             Load::Stop(_) => !friction,
             Load::Contact(_) => true,
             _ => false,
         };
-        if loads.get(name).is_some_and(fits) || self.damage.holds("loads", name) {
+        let expected = match friction {
+            true => "the name of a load that is a contact",
+            false => "the name of a load that is a stop or contact",
+        };
+        self.load_of(pointer, name, fits, expected);
+    }
+
+    /// Checks that the load of a quantity is one that fits.
+    pub(super) fn load_of(
+        &mut self,
+        pointer: &str,
+        name: &str,
+        fits: impl Fn(&Load) -> bool,
+        expected: &str,
+    ) {
+        let loads = &self.document.loads;
+        if loads.get(name).is_some_and(&fits) || self.damage.holds("loads", name) {
             return;
         }
         let suitable = loads.iter().filter(|(_, load)| fits(load));
@@ -365,10 +373,6 @@ impl Checker<'_> {
         let hint = match names.is_empty() {
             true => Some("there is none".to_owned()),
             false => advice(name, "such loads", names),
-        };
-        let expected = match friction {
-            true => "the name of a load that is a contact",
-            false => "the name of a load that is a stop or contact",
         };
         let place = join(pointer, "load");
         self.fault(Finding::new(place, format!("\"{name}\""), expected).hint(hint));
