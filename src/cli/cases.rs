@@ -13,6 +13,7 @@ use crate::problem::{Case, Division, Problem};
 use crate::report::{prepare_directory, with_space, write_all};
 use serde_json::{Map, Value, json};
 use std::fmt::Write;
+use std::path::Path;
 
 /// Analyses all cases of a problem's start. The directory for the results is held by the caller.
 pub(super) fn simulate(
@@ -43,27 +44,7 @@ pub(super) fn simulate(
         }
     }
     if let Some(directory) = &job.output {
-        let phases = phases(all);
-        if !phases.is_empty() {
-            let tables = tables::of_phases(&phases, axes).into_iter();
-            let tables: Vec<_> = tables
-                .map(|(name, bytes)| (directory.join(name), bytes))
-                .collect();
-            write_all(&tables)?;
-            draw(directory, figures::of_phases(problem, &Ends::of(&found)));
-        }
-        let alone = all.each().filter(|_| phases.is_empty());
-        for (case, at) in alone {
-            let own = directory.join(&case.name);
-            let _held = prepare_directory(&own)?;
-            match at {
-                Simulated::Motion(at) => {
-                    motion::write_files(job, &own, (&case.problem, at), axes)?;
-                }
-                Simulated::Statics(at) => statics::write_files(job, &own, &case.problem, at)?,
-                Simulated::Cases(_) => {}
-            }
-        }
+        write_files(job, directory, problem, &found, axes)?;
         if job.report {
             write_report(directory, problem, text, &Ends::of(&found), None)?;
         }
@@ -83,7 +64,37 @@ pub(super) fn simulate(
     }
 }
 
-/// The phases of a motion that events divide; none of cases.
+/// Writes tables and figures of a design: of cases each into a directory of its name, of phases those of the whole motion.
+fn write_files(
+    job: &Job,
+    directory: &Path,
+    problem: &Problem,
+    found: &Simulated,
+    axes: ReactionAxes,
+) -> Result<(), Failure> {
+    match found {
+        Simulated::Motion(at) => motion::write_files(job, directory, (problem, at), axes)?,
+        Simulated::Statics(at) => statics::write_files(job, directory, problem, at)?,
+        Simulated::Cases(all) if all.cases.division == Division::Events => {
+            let tables = tables::of_phases(&phases(all), axes).into_iter();
+            let tables: Vec<_> = tables
+                .map(|(name, bytes)| (directory.join(name), bytes))
+                .collect();
+            write_all(&tables)?;
+            draw(directory, figures::of_phases(problem, &Ends::of(found)));
+        }
+        Simulated::Cases(all) => {
+            for (case, at) in all.each() {
+                let own = directory.join(&case.name);
+                let _held = prepare_directory(&own)?;
+                write_files(job, &own, &case.problem, at, axes)?;
+            }
+        }
+    }
+    Ok(())
+}
+
+/// The phases of a motion that events divide.
 fn phases(all: &InCases<Simulated>) -> Vec<(&Problem, &Simulation)> {
     fn phase<'a>((case, at): (&'a Case, &'a Simulated)) -> Option<(&'a Problem, &'a Simulation)> {
         match at {
@@ -91,10 +102,7 @@ fn phases(all: &InCases<Simulated>) -> Vec<(&Problem, &Simulation)> {
             Simulated::Statics(_) | Simulated::Cases(_) => None,
         }
     }
-    match all.cases.division {
-        Division::Events => all.each().filter_map(phase).collect(),
-        Division::Cases => Vec::new(),
-    }
+    all.each().filter_map(phase).collect()
 }
 
 /// Each case, then the functions over cases.
@@ -106,7 +114,7 @@ fn summary(problem: &Problem, all: &InCases<Simulated>) -> Result<String, Failur
                 motion::summary(&case.problem, at, told.as_ref())
             }
             Simulated::Statics(at) => statics::summary(&case.problem, at),
-            Simulated::Cases(_) => String::new(),
+            Simulated::Cases(all) => summary(&case.problem, all)?,
         })
     };
     let each: Vec<String> = all.side_by_side(of_case)?;
@@ -150,7 +158,7 @@ fn as_json(job: &Job, problem: &Problem, all: &InCases<Simulated>) -> Result<Val
                 motion::as_json(&case.problem, at, (job.error, told.as_ref()))?
             }
             Simulated::Statics(at) => statics::as_json(&case.problem, at, None),
-            Simulated::Cases(_) => Value::Null,
+            Simulated::Cases(all) => as_json(job, &case.problem, all)?,
         };
         Ok((case.name.clone(), own))
     };

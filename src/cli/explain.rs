@@ -14,16 +14,26 @@ pub(crate) fn explain(job: &Job, json: bool) -> Result<u8, Failure> {
         return Err(Failure::bad_input(what));
     }
     no_page(job, "optimize explain")?;
-    let problem = load(job)?;
+    print(&explained(&load(job)?, json)?)?;
+    Ok(DONE)
+}
+
+/// The explanation of a problem, and of each of its cases and phases.
+fn explained(problem: &Problem, json: bool) -> Result<String, Failure> {
     let Some(cases) = &problem.cases else {
-        print(&explained(&problem, json)?)?;
-        return Ok(DONE);
+        return match problem.statics {
+            Some(_) => super::statics::explained(problem, json),
+            None => told(&driver::explain(problem), json),
+        };
     };
-    let mut all = Map::new();
-    let phases = match cases.division {
-        Division::Cases => Vec::new(),
-        Division::Events => driver::explain_phases(&problem).map_err(Failure::numerical)?,
+    let (what, phases) = match cases.division {
+        Division::Cases => ("cases", Vec::new()),
+        Division::Events => {
+            let found = driver::explain_phases(problem).map_err(Failure::numerical)?;
+            ("phases", found)
+        }
     };
+    let (mut all, mut texts) = (Map::new(), String::new());
     for (c, case) in cases.list.iter().enumerate() {
         let text = match phases.get(c) {
             Some(own) => told(own, json)? + &handed_on(&case.problem, json),
@@ -34,25 +44,14 @@ pub(crate) fn explain(job: &Job, json: bool) -> Result<u8, Failure> {
                 let own: Value = serde_json::from_str(&text).map_err(Failure::numerical)?;
                 all.insert(case.name.clone(), own);
             }
-            false => print(&text)?,
+            false => texts += &text,
         }
     }
-    if json {
-        let what = match cases.division {
-            Division::Cases => "cases",
-            Division::Events => "phases",
-        };
-        let text = serde_json::to_string_pretty(&json!({what: all}));
-        print(&(text.map_err(Failure::numerical)? + "\n"))?;
+    if !json {
+        return Ok(texts);
     }
-    Ok(DONE)
-}
-
-fn explained(problem: &Problem, json: bool) -> Result<String, Failure> {
-    if problem.statics.is_some() {
-        return super::statics::explained(problem, json);
-    }
-    told(&driver::explain(problem), json)
+    let text = serde_json::to_string_pretty(&json!({what: all}));
+    Ok(text.map_err(Failure::numerical)? + "\n")
 }
 
 /// What an event costs.

@@ -22,7 +22,7 @@ pub struct Event {
     pub off: Vec<String>,
     /// Names of joints, loads and drives that go on. They are off before, from the start or by an event. A joint closes where
     /// its bodies are then: its frame on its second body becomes that on its first one, and a rod keeps the distance of its
-    /// ends.
+    /// ends. A drive goes on from where its joint is then.
     #[serde(default)]
     pub on: Vec<String>,
 }
@@ -65,13 +65,13 @@ impl Document {
             .unwrap_or_else(|| after.find_map(changes) != Some(true))
     }
 
-    /// The phase since which a joint that an event closed is closed in `phase`.
-    pub fn closed_since(&self, joint: &str, phase: usize) -> Option<usize> {
-        let closes = |event: &Event| event.on.iter().any(|own| own == joint);
+    /// The phase since which what an event has put on is on in `phase`.
+    pub fn on_since(&self, name: &str, phase: usize) -> Option<usize> {
+        let comes = |event: &Event| event.on.iter().any(|own| own == name);
         let mut before = self.events.values().take(phase);
         let last = before
-            .rposition(closes)
-            .filter(|_| self.is_on(joint, phase));
+            .rposition(comes)
+            .filter(|_| self.is_on(name, phase));
         last.map(|event| event + 1)
     }
 

@@ -75,7 +75,7 @@ pub struct Integration {
 pub struct Events {
     /// That of the scene.
     pub own: Option<f64>,
-    /// Of a problem with cases: that of each.
+    /// Of a problem with cases: that of each, or of each of its phases.
     pub cases: Vec<Option<f64>>,
 }
 
@@ -221,19 +221,42 @@ impl Integration {
         (self.refreshes, self.unlowered) = (refreshes, unlowered);
     }
 
+    /// The integrations of its cases, or of the phases of these, in their order.
+    fn leaves(&self) -> Vec<Option<&Self>> {
+        let mut all = Vec::new();
+        for own in &self.cases {
+            match own.as_ref() {
+                Some(own) if !own.cases.is_empty() => all.extend(own.leaves()),
+                own => all.push(own),
+            }
+        }
+        all
+    }
+
+    fn leaves_mut(&mut self) -> Vec<Option<&mut Self>> {
+        let mut all = Vec::new();
+        for own in &mut self.cases {
+            match own.as_mut() {
+                Some(own) if !own.cases.is_empty() => all.extend(own.leaves_mut()),
+                own => all.push(own),
+            }
+        }
+        all
+    }
+
     /// When the events came in the last runs.
     pub(super) fn events(&self) -> Events {
-        let of_case = |own: &Option<Self>| own.as_ref()?.event;
+        let leaves = self.leaves().into_iter();
         Events {
             own: self.event,
-            cases: self.cases.iter().map(of_case).collect(),
+            cases: leaves.map(|own| own?.event).collect(),
         }
     }
 
     /// Begins to look for events where they came in an earlier run.
     pub(super) fn recall_events(&mut self, events: &Events) {
         self.event = events.own;
-        for (own, event) in self.cases.iter_mut().zip(&events.cases) {
+        for (own, event) in self.leaves_mut().into_iter().zip(&events.cases) {
             if let Some(own) = own {
                 own.event = *event;
             }
@@ -243,7 +266,7 @@ impl Integration {
     /// When the events come in the next runs, if that is known to the last bit.
     pub(super) fn settle(&mut self, events: Option<&Events>) {
         self.settled = events.and_then(|events| events.own);
-        for (c, own) in self.cases.iter_mut().enumerate() {
+        for (c, own) in self.leaves_mut().into_iter().enumerate() {
             if let Some(own) = own {
                 own.settled = events.and_then(|events| *events.cases.get(c)?);
             }

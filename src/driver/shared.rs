@@ -6,6 +6,7 @@
 //! numbers, and all ranks act on it after the same exchange.
 
 use crate::integrate::WorkCounts;
+use crate::integration::Events;
 use crate::report::evaluations::{StepsInUse, Work};
 use serde::{Deserialize, Serialize};
 use std::fmt;
@@ -61,8 +62,8 @@ pub(crate) enum Content {
 #[derive(Clone, Debug, Serialize, Deserialize)]
 pub(crate) struct CaseValues {
     pub case: usize,
-    /// When its motion ended at an event.
-    pub event: Option<f64>,
+    /// When its motions ended at events.
+    pub events: Events,
     pub refreshes: usize,
     pub unlowered: usize,
     /// Its steps, if they were chosen now.

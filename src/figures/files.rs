@@ -70,11 +70,12 @@ pub fn of_ends(problem: &Problem, ends: &Ends, history: &History) -> Vec<NamedFi
     }
 }
 
-/// Figures of designs without a history, such as those of a case.
+/// Figures of designs without a history, such as those of a case, which may have phases.
 pub fn of_designs(problem: &Problem, ends: &Ends) -> Vec<NamedFile> {
-    match problem.statics {
-        Some(_) => of_structures::figures(problem, &ends.structures, None),
-        None => figures(problem, &ends.motions, None),
+    match (&problem.cases, &problem.statics) {
+        (Some(_), _) => of_phases(problem, ends),
+        (None, Some(_)) => of_structures::figures(problem, &ends.structures, None),
+        (None, None) => figures(problem, &ends.motions, None),
     }
 }
 

@@ -18,7 +18,7 @@ use crate::math::Vec3;
 use crate::page;
 use crate::page::{Body, Chart, Curve, Link, Stage, Value, convergence, rounded};
 use crate::plots::{ConnectorKind, History as Curves};
-use crate::problem::{Drawing, Outline, Problem};
+use crate::problem::{Case, Drawing, Outline, Problem};
 use crate::report::{History, Optimum};
 
 /// Most frames of a motion.
@@ -85,8 +85,8 @@ pub fn page(
     match ends.cases.is_empty() {
         true => add(seen(problem, ends), ""),
         false => {
-            for (case, ends) in &ends.cases {
-                add(seen(&case.problem, ends), &case.name);
+            for (name, problem, ends) in parts(ends) {
+                add(seen(problem, ends), &name);
             }
         }
     }
@@ -116,6 +116,18 @@ pub fn page(
         goes_on: false,
         version: env!("CARGO_PKG_VERSION"),
     })
+}
+
+/// The cases and phases of designs, with their names.
+fn parts<'a>(ends: &'a Ends) -> Vec<(String, &'a Problem, &'a Ends<'a>)> {
+    let of_case = |(case, own): &'a (&Case, Ends<'a>)| match own.cases.is_empty() {
+        true => vec![(case.name.clone(), &case.problem, own)],
+        false => {
+            let named = |(phase, problem, ends)| (format!("{}, {phase}", case.name), problem, ends);
+            parts(own).into_iter().map(named).collect()
+        }
+    };
+    ends.cases.iter().flat_map(of_case).collect()
 }
 
 /// What a page shows of designs of one scene.

@@ -6,6 +6,7 @@
 //! by [`Composition`](super::Composition).
 
 use super::composing::{Composing, value_in_case};
+use super::events;
 use super::fault::Faults;
 use super::finding::Finding;
 use super::overrides::Override;
@@ -246,14 +247,9 @@ fn of_case(
     stated.keep(&mut document, name);
     change(&mut document, (name, case)).map_err(located)?;
     document["name"] = Value::from(value_in_case(&base.name, name));
-    let found = read::single(
-        document,
-        source.clone(),
-        Vec::new(),
-        (file, overrides),
-        None,
-    )?
-    .0;
+    let phase = (!base.written.events.is_empty()).then_some(0);
+    let at = (file, overrides);
+    let found = read::single(document, source.clone(), Vec::new(), at, phase)?.0;
     let names = |problem: &Problem| -> Vec<String> {
         problem
             .variables
@@ -267,7 +263,10 @@ fn of_case(
         let finding = Finding::new(pointer, "a set of other thicknesses or sections", expected);
         return Err(located(finding.of_key()));
     }
-    Ok(found)
+    match phase {
+        Some(_) => events::complete(found, source, at),
+        None => Ok(found),
+    }
 }
 
 /// Replaces the values of a document by those of a case.

@@ -129,7 +129,7 @@ pub(super) fn complete(
     for own in &mut base.constraints {
         own.function += first;
     }
-    (base.statics, base.lowering) = (None, None);
+    (base.statics, base.lowering, base.written.phase) = (None, None, None);
     base.cases = Some(Arc::new(Cases {
         list,
         division: Division::Events,

@@ -131,13 +131,16 @@ pub(super) fn at<S: Scalar>(
     }
 }
 
-/// The drives of the joint `name`.
+/// The drives of the joint `name` that are on, in the first phase if events switch them.
 pub(super) fn drives<S: Scalar>(
     document: &Document,
     assembly: &Assembly<S>,
     name: &str,
 ) -> Vec<Drive<S>> {
-    let of = |drive: &&WrittenDrive| drive.joint == name;
+    let phase = document.phase.unwrap_or(0);
+    let of = |(own, drive): &(&String, &WrittenDrive)| {
+        drive.joint == name && document.is_on(own, phase)
+    };
     // A machine at rest holds its drives as they are at the start.
     let course = |written: Written| match (course(assembly, written), document.is_rest()) {
         (course, true) => TimeFunction::constant(course.value(S::zero())),
@@ -156,9 +159,9 @@ pub(super) fn drives<S: Scalar>(
     };
     let mut all: Vec<Drive<S>> = document
         .drives
-        .values()
+        .iter()
         .filter(of)
-        .flat_map(parts)
+        .flat_map(|(_, drive)| parts(drive))
         .collect();
     all.extend(controllers::held_at_rest(document, assembly, name));
     all

@@ -14,19 +14,20 @@ pub(super) fn load(path: &Path, overrides: &[Override]) -> Result<Problem, Fault
 /// Reads a problem from its text.
 pub(super) fn parse(written: &str, file: &str, overrides: &[Override]) -> Result<Problem, Faults> {
     let (document, source, findings) = read::document(written, file, overrides)?;
+    let has = |key: &str| (document[key].as_object()).is_some_and(|all| !all.is_empty());
     let is_divided = ["cases", "events"]
         .iter()
         .any(|key| document.get(key).is_some());
-    let has_events = (document["events"].as_object()).is_some_and(|all| !all.is_empty());
     let of_parts = is_divided.then(|| source.clone());
-    let phase = has_events.then_some(0);
+    // The phases of each case are read with it.
+    let phase = (has("events") && !has("cases")).then_some(0);
     let (problem, stated) = read::single(document, source, findings, (file, overrides), phase)?;
-    if let (true, Some(source)) = (has_events, &of_parts) {
-        return events::complete(problem, source, (file, overrides));
-    }
     match (stated, of_parts) {
         (Some(stated), Some(source)) => {
             cases::complete(problem, stated, &source, (file, overrides))
+        }
+        (None, Some(source)) if phase.is_some() => {
+            events::complete(problem, &source, (file, overrides))
         }
         _ => Ok(problem),
     }

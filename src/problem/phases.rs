@@ -19,7 +19,7 @@ use crate::adjoint::WeightedEnd;
 use crate::functions::{Function, Scene, turning::turns};
 use crate::integrate::Trajectory;
 use crate::math::{Parameters, Scalar, Vec3};
-use crate::model::{DegreeOfFreedom, JointFrame, JointKind, Model};
+use crate::model::{JointFrame, JointKind, Model};
 use crate::schema::Document;
 use crate::system::redundancy;
 
@@ -80,7 +80,7 @@ pub(super) fn begin<S: Scalar>(document: &Document, scene: &mut Scene<S>, state:
     for (j, (name, written)) in document.joints.iter().enumerate() {
         match (
             document.is_on(name, phase),
-            document.closed_since(name, phase),
+            document.on_since(name, phase),
         ) {
             (false, _) => model.open(j),
             (true, None) => {}
@@ -99,20 +99,9 @@ pub(super) fn begin<S: Scalar>(document: &Document, scene: &mut Scene<S>, state:
             }
         }
     }
-    for (name, drive) in &document.drives {
-        if !document.is_on(name, phase) {
-            let turns = drive.turn.is_some();
-            let joint = document.joints.get_index_of(&drive.joint);
-            if let Some(joint) = joint.and_then(|j| model.joints.get_mut(j)) {
-                joint.drives.retain(|own| match own.dof {
-                    DegreeOfFreedom::Rotation => !turns,
-                    DegreeOfFreedom::Translation => drive.slide.is_none(),
-                });
-            }
-        }
-    }
     switch_off_loads(document, phase, model);
     if state.is_empty() {
+        resume_drives(document, phase, model);
         return;
     }
     let angles = scene
@@ -136,7 +125,20 @@ pub(super) fn begin<S: Scalar>(document: &Document, scene: &mut Scene<S>, state:
     }
     let time = next();
     scene.model.begin_at(time);
+    resume_drives(document, phase, &mut scene.model);
     scene.duration -= time;
+}
+
+/// Lets drives that came on at an event, they or their joints, go on from where their joints are.
+fn resume_drives<S: Scalar>(document: &Document, phase: usize, model: &mut Model<S>) {
+    for (name, drive) in &document.drives {
+        let came = |own: &str| document.on_since(own, phase).is_some();
+        if (came(name) || came(&drive.joint))
+            && let Some(joint) = document.joints.get_index_of(&drive.joint)
+        {
+            model.resume_drives(joint);
+        }
+    }
 }
 
 /// Leaves out the rows that are redundant in the position with which a phase begins, if joints have closed: in another
@@ -146,7 +148,7 @@ pub(super) fn leave_out<S: Scalar>(document: &Document, model: &mut Model<S>, st
         return;
     };
     let mut names = document.joints.keys();
-    if !names.any(|name| document.closed_since(name, phase).is_some()) {
+    if !names.any(|name| document.on_since(name, phase).is_some()) {
         return;
     }
     let mut real = model.map(&mut |x| x.re());
@@ -180,7 +182,7 @@ impl Problem {
             return Vec::new();
         };
         let names = self.written.joints.keys().enumerate();
-        let since = |name: &str| self.written.closed_since(name, phase);
+        let since = |name: &str| self.written.on_since(name, phase);
         let kept = names.filter(|(_, name)| since(name).is_some_and(|since| since < phase));
         kept.map(|(j, _)| j).collect()
     }
@@ -256,6 +258,13 @@ impl Problem {
         let event = self.written.phase?.checked_sub(1)?;
         let (name, _) = self.written.events.get_index(event)?;
         Some(name)
+    }
+
+    /// Whether its phase waits for the quantity that ended the one before it.
+    pub fn waits_again(&self) -> bool {
+        let of = |event: &str| &self.document["events"][event]["when"]["measure"];
+        let both = self.last_event().zip(self.next_event());
+        both.is_some_and(|(last, next)| !of(next).is_null() && of(last) == of(next))
     }
 
     /// When its phase begins at the design and the state `x` \[s\].

@@ -11,11 +11,12 @@ use serde_json::{Value, json};
 use std::collections::BTreeSet;
 
 /// Sections without a part in the mass.
-const WITHOUT_MASS: [&str; 8] = [
+const WITHOUT_MASS: [&str; 9] = [
     "gravity",
     "loads",
     "drives",
     "couplings",
+    "events",
     "simulation",
     "load_cases",
     "modes",

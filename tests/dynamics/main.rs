@@ -48,6 +48,7 @@ mod methods_match_references;
 mod newton_krylov;
 mod node_kinematics;
 mod phases;
+mod phases_of_machines;
 mod planar_joints;
 mod reaction_functions;
 mod reactions_carry_weight;

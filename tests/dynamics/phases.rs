@@ -10,21 +10,21 @@ use nalgebra::{DMatrix, DVector};
 use serde_json::Value;
 
 /// All functions of the whole motion, by name.
-fn whole(problem: &Problem) -> Vec<usize> {
+pub(super) fn whole(problem: &Problem) -> Vec<usize> {
     (problem.composition.first..problem.function_names.len()).collect()
 }
 
-fn number(problem: &Problem, name: &str) -> usize {
+pub(super) fn number(problem: &Problem, name: &str) -> usize {
     let mut all = whole(problem).into_iter();
     all.find(|&f| problem.function_names[f] == name)
         .expect("a function")
 }
 
-fn simulated(problem: &Problem) -> Simulated {
+pub(super) fn simulated(problem: &Problem) -> Simulated {
     Simulated::of(problem, &problem.start()).unwrap_or_else(|failure| panic!("{failure}"))
 }
 
-fn phases(at: &Simulated) -> &InCases<Simulated> {
+pub(super) fn phases(at: &Simulated) -> &InCases<Simulated> {
     match at {
         Simulated::Cases(all) => all,
         _ => panic!("not divided"),
@@ -32,7 +32,7 @@ fn phases(at: &Simulated) -> &InCases<Simulated> {
 }
 
 /// The phases with their jumps of kinetic energy.
-fn jumps(at: &Simulated) -> Vec<[f64; 2]> {
+pub(super) fn jumps(at: &Simulated) -> Vec<[f64; 2]> {
     let own = phases(at).each().filter_map(|(case, at)| match at {
         Simulated::Motion(at) => Simulation::jump(at, &case.problem),
         _ => None,
@@ -42,7 +42,7 @@ fn jumps(at: &Simulated) -> Vec<[f64; 2]> {
 
 /// A double pendulum with a motor, wind and a spring. Five events: the motor stops at a time, the elbow locks at an angle, it
 /// comes free at a time, it lets go at a height, and the spring lets go at a place. The first `count` of them come.
-fn arms(count: usize, method: &Value) -> Value {
+pub(super) fn arms(count: usize, method: &Value) -> Value {
     let position =
         |direction: Value| json!({"position": {"body": "lower", "direction": direction}});
     let mut document = json!({

@@ -67,6 +67,19 @@ pub enum AnalysisFailure {
         /// Why.
         failure: Box<AnalysisFailure>,
     },
+    /// Two events of a motion come at the same time.
+    #[error(
+        "the events \"{first}\" and \"{second}\" come at once, at t = {time:.6e} s: their order, and what the motion is after \
+         them, would be a matter of round-off; make them one event, or move one of them"
+    )]
+    AtOnce {
+        /// The earlier one in the file.
+        first: String,
+        /// The later one.
+        second: String,
+        /// When \[s\].
+        time: f64,
+    },
     /// One motion was requested of several cases.
     #[error("the problem has cases: ask for one of them")]
     SeveralCases,

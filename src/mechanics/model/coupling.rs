@@ -140,31 +140,39 @@ impl<S: Scalar> Model<S> {
 
     /// Frame B of a joint, turned or shifted by `shift` from where the motion is zero at the placement.
     fn placed_frame(&self, joint: &Joint<S>, dof: DegreeOfFreedom, shift: S) -> JointFrame<S> {
+        let mut frame = joint.frame_b;
+        let [e1, e2, e3] = frame.axes;
+        let place = self.place_of(joint, dof) + shift;
+        match dof {
+            DegreeOfFreedom::Rotation => {
+                let (sine, cosine) = place.sin_cos();
+                frame.axes = [e1 * cosine + e2 * sine, e2 * cosine - e1 * sine, e3];
+            }
+            DegreeOfFreedom::Translation => frame.point += e3 * place,
+        }
+        frame
+    }
+
+    /// Where frame A of a joint is in frame B at the placement: its angle about e3 in (−π, π] \[rad\], or how far it is along e3
+    /// \[m\].
+    pub(super) fn place_of(&self, joint: &Joint<S>, dof: DegreeOfFreedom) -> S {
         let a = &self.bodies[joint.body_a];
         let (origin, turned) = match joint.body_b.map(|body| &self.bodies[body]) {
             Some(b) => (b.position, rotation::matrix(&b.orientation)),
             None => (Vec3::zeros(), Mat3::identity()),
         };
         let turn_a = rotation::matrix(&a.orientation);
-        let mut frame = joint.frame_b;
-        let [e1, e2, e3] = frame.axes;
+        let [e1, e2, _] = joint.frame_b.axes;
         match dof {
             DegreeOfFreedom::Rotation => {
                 let seen = turned.tr_mul(&(turn_a * joint.frame_a.axes[0]));
-                let (x, y) = (e1.dot(&seen), e2.dot(&seen));
-                let size = (x * x + y * y).sqrt();
-                let (x, y) = (x / size, y / size);
-                let (sine, cosine) = shift.sin_cos();
-                let (x, y) = (x * cosine - y * sine, x * sine + y * cosine);
-                frame.axes = [e1 * x + e2 * y, e2 * x - e1 * y, e3];
+                e2.dot(&seen).atan2(e1.dot(&seen))
             }
             DegreeOfFreedom::Translation => {
                 let point_a = a.position + turn_a * joint.frame_a.point;
-                let d = point_a - origin - turned * frame.point;
-                let slide = (turn_a * joint.frame_a.axes[2]).dot(&d);
-                frame.point += e3 * (slide + shift);
+                let d = point_a - origin - turned * joint.frame_b.point;
+                (turn_a * joint.frame_a.axes[2]).dot(&d)
             }
         }
-        frame
     }
 }

@@ -7,9 +7,10 @@
 //! s_B = R_Bᵀ (r_A + R_A s_A − r_B),     e_B = R_Bᵀ R_A e_A,
 //! ```
 //!
-//! and a rod keeps the distance of its points. So no body moves when a joint closes.
+//! and a rod keeps the distance of its points. So no body moves when a joint closes. A drive that comes on goes on from
+//! where its joint is: its course is shifted by a constant.
 
-use super::{Joint, JointKind, LoadKind, Model, TimeFunction};
+use super::{Drive, Joint, JointKind, LoadKind, Model, TimeFunction};
 use crate::math::{Mat3, Scalar, Vec3, rotation};
 
 impl<S: Scalar> Model<S> {
@@ -53,6 +54,16 @@ impl<S: Scalar> Model<S> {
                 | LoadKind::DistanceStop { .. }
                 | LoadKind::Contact(_) => {}
             }
+        }
+    }
+
+    /// Shifts the courses of the drives of a joint so that they begin where the poses of its bodies are.
+    pub fn resume_drives(&mut self, joint: usize) {
+        let own = &self.joints[joint];
+        let place = |drive: &Drive<S>| self.place_of(own, drive.dof) - drive.course.value(S::zero());
+        let shifts: Vec<S> = own.drives.iter().map(place).collect();
+        for (drive, by) in self.joints[joint].drives.iter_mut().zip(shifts) {
+            drive.course = drive.course.shifted(by);
         }
     }
 

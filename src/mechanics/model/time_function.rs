@@ -106,6 +106,21 @@ impl<S: Scalar> TimeFunction<S> {
         }
     }
 
+    /// The same function and a constant: m(t) + by.
+    pub fn shifted(&self, by: S) -> Self {
+        let mut own = self.clone();
+        match &mut own {
+            Self::Polynomial(coefficients) => coefficients[0] += by,
+            Self::Harmonic { mean, .. } => *mean += by,
+            Self::SCurve(curve) => {
+                curve.from += by;
+                curve.to += by;
+            }
+            Self::Table { values, .. } => values.iter_mut().for_each(|value| *value += by),
+        }
+        own
+    }
+
     /// Value at `time` \[s\].
     pub fn value(&self, time: S) -> S {
         self.derivatives(time)[0]

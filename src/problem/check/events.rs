@@ -1,8 +1,10 @@
 //! Events that change the machine.
 
 use super::Checker;
+use crate::couplings::moved;
 use crate::finding::Finding;
 use crate::pointer::{advice, join};
+use crate::schema::couplings::Coupling;
 use crate::schema::events::{Event, When};
 
 impl Checker<'_> {
@@ -18,14 +20,6 @@ impl Checker<'_> {
                 "\"analysis\": \"motion\", in which something happens",
             ));
             return;
-        }
-        if !document.cases.is_empty() {
-            let expected = "events without \"cases\"";
-            self.fault(whole("events in a file with cases", expected));
-        }
-        if document.bodies.values().any(|body| body.is_flexible()) {
-            let expected = "rigid bodies";
-            self.fault(whole("events of a machine with flexible bodies", expected));
         }
         for (k, (name, event)) in document.events.iter().enumerate() {
             let pointer = join("/events", name);
@@ -123,28 +117,27 @@ impl Checker<'_> {
             };
             fault(format!("{said}, which {found}"), expected);
         }
-        if on && drive {
-            fault(
-                format!("the drive {said}"),
-                "joints and loads: a drive goes off only",
-            );
+        if let Some(own) = document.drives.get(name)
+            && on
+            && !document.is_on(&own.joint, k + 1)
+        {
+            let expected = "a drive of a joint that is closed then";
+            fault(format!("the drive {said} of an open joint"), expected);
         }
         if let Some(joint) = joint {
-            let driven = document.drives.values().any(|own| own.joint == name);
-            if on && driven {
-                let expected = "a joint without drives: it closes where its bodies are then";
-                fault(format!("the driven joint {said}"), expected);
-            }
             if on && joint.start().is_some() && !document.is_on(name, 0) {
                 let expected = "a joint without a start: it is open then";
                 fault(format!("the joint {said} with a start"), expected);
             }
-            if !document.couplings.is_empty() {
-                let expected = "loads and drives, as couplings go through joints";
-                fault(
-                    format!("the joint {said} of a machine with couplings"),
-                    expected,
-                );
+            let ends = joint.between();
+            let couples = |coupling: &Coupling| {
+                let mut all = moved(coupling).into_iter();
+                all.any(|(own, _)| own == name || ends.iter().any(|end| *end == *own))
+            };
+            let mut all = document.couplings.iter();
+            if let Some((coupling, _)) = all.find(|(_, own)| couples(own)) {
+                let found = format!("the joint {said}, which holds what \"{coupling}\" couples");
+                fault(found, "a joint through which no coupling goes");
             }
         }
     }

@@ -39,9 +39,39 @@ fn told(case: &Case, failure: AnalysisFailure) -> AnalysisFailure {
     }
 }
 
-/// Fails if the end of a phase is due before it begins.
-fn admit(case: &Case, x: &[f64]) -> Result<(), AnalysisFailure> {
-    let duration = case.problem.unlowered_scene::<f64>(x).duration;
+/// Events nearer than this part of the time, or of the change of the quantity, come at once.
+const AT_ONCE: f64 = 1e-9;
+
+/// The failure of a phase whose event comes with the one before it, at the time `begin`.
+fn at_once(case: &Case, begin: f64) -> Option<AnalysisFailure> {
+    let own = &case.problem;
+    Some(AnalysisFailure::AtOnce {
+        first: own.last_event()?.to_owned(),
+        second: own.next_event()?.to_owned(),
+        time: begin,
+    })
+}
+
+/// Fails if the end of a phase is due before it begins, or as it begins. `before` is the phase before it.
+fn admit(
+    case: &Case,
+    (x, begin): (&[f64], f64),
+    before: Option<&Evaluated>,
+) -> Result<(), AnalysisFailure> {
+    let scene = case.problem.unlowered_scene::<f64>(x);
+    let duration = scene.duration;
+    let has_reached = |before: &Evaluated| {
+        let until = scene.until.as_ref()?;
+        let gaps = until.gaps(&before.scene.model, &before.run);
+        let largest = gaps.iter().fold(0.0_f64, |m, gap| m.max(gap.abs()));
+        Some(gaps.last()?.abs() <= AT_ONCE * largest)
+    };
+    // A quantity may reach a value again.
+    let reached = before.filter(|_| !case.problem.waits_again());
+    let is_due = duration.abs() <= AT_ONCE * begin || reached.and_then(has_reached) == Some(true);
+    if let Some(failure) = at_once(case, begin).filter(|_| is_due) {
+        return Err(failure);
+    }
     if duration > 0.0 {
         return Ok(());
     }
@@ -65,11 +95,16 @@ pub(crate) fn each<T>(
     mut of: impl FnMut(usize, &Problem, &[f64]) -> Result<T, AnalysisFailure>,
     motion: impl Fn(&T) -> Option<&Evaluated>,
 ) -> Result<Vec<Option<T>>, AnalysisFailure> {
-    let (mut list, mut begin, mut whole) = (Vec::new(), 0.0, x.to_vec());
+    let (mut list, mut begin, mut whole) = (Vec::<Option<T>>::new(), 0.0, x.to_vec());
     for (p, case) in cases.list.iter().enumerate() {
-        admit(case, &whole)?;
+        let before = list.last().and_then(|own| motion(own.as_ref()?));
+        admit(case, (&whole, begin), before)?;
         let found = of(p, &case.problem, &whole).map_err(|failure| told(case, failure))?;
         if let (Some(next), Some(at)) = (cases.list.get(p + 1), motion(&found)) {
+            let at_once = at_once(case, begin).filter(|_| at.run.duration <= AT_ONCE * begin);
+            if let Some(failure) = at_once {
+                return Err(failure);
+            }
             let state = next.problem.state_after(&at.scene, &at.run, begin);
             begin += at.run.duration;
             whole = [x, &state].concat();

@@ -3,7 +3,7 @@
 use super::{AnalysedOnce, InCases};
 use crate::analysed::{Analysed, AnalysisFailure};
 use crate::integrate::WorkCounts;
-use crate::integration::{Events, Integration};
+use crate::integration::Integration;
 use crate::known_evaluations::{kept, steps_of};
 use crate::problem::{Case, Cases, Problem};
 use crate::report::evaluations::Work;
@@ -69,10 +69,7 @@ pub(super) fn values(
         if let Some(kept) = (told.steps.as_ref()).and_then(|steps| kept(steps, told.refreshes)) {
             own.restore(kept);
         }
-        own.recall_events(&Events {
-            own: told.event,
-            cases: Vec::new(),
-        });
+        own.recall_events(&told.events);
         (own.refreshes, own.unlowered) = (told.refreshes, told.unlowered);
         let refresh = told.reason.and_then(|why| own.in_use(&why));
         found[told.case] = match told.found {
@@ -111,7 +108,7 @@ fn told(
     };
     Some(CaseValues {
         case: number,
-        event: integration.event,
+        events: integration.events(),
         refreshes: integration.refreshes,
         unlowered: integration.unlowered,
         steps,
