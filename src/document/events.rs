@@ -65,13 +65,20 @@ impl Document {
             .unwrap_or_else(|| after.find_map(changes) != Some(true))
     }
 
+    /// Whether an event puts a joint, load or drive on or off.
+    pub fn is_switched(&self, name: &str) -> bool {
+        let mut all = self
+            .events
+            .values()
+            .flat_map(|event| event.on.iter().chain(&event.off));
+        all.any(|own| own == name)
+    }
+
     /// The phase since which what an event has put on is on in `phase`.
     pub fn on_since(&self, name: &str, phase: usize) -> Option<usize> {
         let comes = |event: &Event| event.on.iter().any(|own| own == name);
         let mut before = self.events.values().take(phase);
-        let last = before
-            .rposition(comes)
-            .filter(|_| self.is_on(name, phase));
+        let last = before.rposition(comes).filter(|_| self.is_on(name, phase));
         last.map(|event| event + 1)
     }
 

@@ -8,6 +8,7 @@ use crate::integrate::{IntegrationFailure, Multipliers, Trajectory};
 use crate::problem::Problem;
 use crate::system::Numbering;
 use crate::system::observe::{Observation, Reaction, observe, reactions};
+use crate::system::placement::guess;
 use std::borrow::Cow;
 
 /// A simulated design with its observations at every instant.
@@ -119,11 +120,10 @@ impl Simulation {
     /// missing: ½ (v⁻ − v⁺)ᵀ M (v⁻ − v⁺) if they rest.
     pub fn jump(&self, problem: &Problem) -> Option<[f64; 2]> {
         problem.last_event()?;
-        let before = self.at.scene.model.bodies.iter().map(|body| {
-            let spin = body.angular_velocity;
-            body.mass * body.velocity.norm_squared() + spin.dot(&(body.inertia * spin))
-        });
-        Some([0.5 * before.sum::<f64>(), self.observations[0].kinetic])
+        let (model, run) = (&self.at.scene.model, &self.at.run);
+        let (_, v) = guess(model);
+        let before = observe(model, &run.numbering, (run.q(0), &v), 0.0);
+        Some([before.kinetic, self.observations[0].kinetic])
     }
 
     /// Largest |E(t) − E(0)| of the total energy \[J\].

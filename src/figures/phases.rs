@@ -52,7 +52,7 @@ pub(super) fn energy(design: &Design, of: impl Fn(&str, &Simulation) -> EnergyRu
     all
 }
 
-/// The bodies of all phases: as many snapshots as of one motion, spread over the whole.
+/// The bodies of all phases, and in each what joins them then: as many snapshots as of one motion, spread over the whole.
 pub(super) fn lapse(design: &Design, of: impl Fn(&Simulation, &Drawing) -> Motion) -> Motion {
     let duration = |own: &Simulation| own.motion().duration;
     let whole: f64 = design.phases.iter().map(|(_, own)| duration(own)).sum();
@@ -70,8 +70,18 @@ pub(super) fn lapse(design: &Design, of: impl Fn(&Simulation, &Drawing) -> Motio
         let part = drawing.snapshots as f64 * duration(simulation) / whole;
         drawing.snapshots = (part.round() as usize).max(if p == 0 { 2 } else { 1 });
         let own = of(simulation, &drawing);
+        // It is nowhere in the snapshots of the phases before.
+        let before = all.bodies.first().map_or(0, |body| body.outlines.len());
+        all.connectors
+            .extend(own.connectors.into_iter().map(|mut connector| {
+                let nowhere = std::iter::repeat_n([[f64::NAN; 2]; 2], before);
+                connector.ends = nowhere.chain(connector.ends).collect();
+                connector
+            }));
         if p == 0 {
             (all.bodies, all.traces) = (own.bodies, own.traces);
+            // Colours of stress have no common scale.
+            all.bodies.iter_mut().for_each(|body| body.patches.clear());
             continue;
         }
         for (body, more) in all.bodies.iter_mut().zip(own.bodies) {

@@ -45,12 +45,15 @@ pub(super) fn ordered(joint: &Joint) -> [&str; 2] {
     }
 }
 
-/// The joints on the shortest way from a body to another; `None` if there is none.
+/// The joints on the shortest way from a body to another, of those that no event switches; `None` if there is none.
 pub(super) fn way(document: &Document, from: &str, to: &str) -> Option<Vec<Passed>> {
     let mut came: BTreeMap<&str, Option<(&str, Passed)>> = BTreeMap::from([(from, None)]);
     let mut next = VecDeque::from([from]);
     while let Some(at) = next.pop_front() {
-        for (joint, written) in document.joints.values().enumerate() {
+        for (joint, (name, written)) in document.joints.iter().enumerate() {
+            if document.is_switched(name) {
+                continue;
+            }
             let [a, b] = ordered(written);
             let (far, sign) = match at {
                 _ if at == b => (a, 1.0),
@@ -82,7 +85,9 @@ pub(super) fn carrier<'a>(
         return Some(given);
     }
     let beside = |body: &str| {
-        let joined = document.joints.values().map(ordered);
+        let joined = document.joints.iter();
+        let joined = joined.filter(|(name, _)| !document.is_switched(name));
+        let joined = joined.map(|(_, joint)| ordered(joint));
         let mut all: Vec<&str> = joined
             .filter_map(|[a, b]| match body {
                 _ if a == body => Some(b),

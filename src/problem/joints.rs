@@ -138,9 +138,8 @@ pub(super) fn drives<S: Scalar>(
     name: &str,
 ) -> Vec<Drive<S>> {
     let phase = document.phase.unwrap_or(0);
-    let of = |(own, drive): &(&String, &WrittenDrive)| {
-        drive.joint == name && document.is_on(own, phase)
-    };
+    let of =
+        |(own, drive): &(&String, &WrittenDrive)| drive.joint == name && document.is_on(own, phase);
     // A machine at rest holds its drives as they are at the start.
     let course = |written: Written| match (course(assembly, written), document.is_rest()) {
         (course, true) => TimeFunction::constant(course.value(S::zero())),

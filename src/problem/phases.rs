@@ -78,10 +78,7 @@ pub(super) fn begin<S: Scalar>(document: &Document, scene: &mut Scene<S>, state:
         }
     }
     for (j, (name, written)) in document.joints.iter().enumerate() {
-        match (
-            document.is_on(name, phase),
-            document.on_since(name, phase),
-        ) {
+        match (document.is_on(name, phase), document.on_since(name, phase)) {
             (false, _) => model.open(j),
             (true, None) => {}
             (true, Some(since)) => {

@@ -18,14 +18,14 @@ fn elastic_arms(count: usize, method: &Value) -> Value {
     document["bodies"]["lower"] = json!({
         "beam": {
             "length": 0.8, "frame": "clamped",
-            "section": {"rectangle": {"width": 0.02, "height": 0.02}},
+            "section": {"rectangle": {"width": 0.02, "height": 0.04}},
             "material": {"young": 2e9, "poisson": 0.3, "density": 2700},
             "modes": {"bending_y": 2, "bending_z": 0, "torsion": 0},
             "damping": {"ratio": 0.02}
         },
         "place": {"put": "start", "at": "upper.b", "turn": {"axis": [0, 0, 1], "angle": 0.2}}
     });
-    document["loads"]["wind"]["force"]["at"] = json!("end");
+    document["loads"]["wind"]["force"]["point"] = json!("end");
     document["loads"]["spring"]["spring"]["at"]["a"] = json!("end");
     document["functions"]["peak"]["ks"]["of"]["speed_squared"]["point"] = json!("end");
     for name in ["x", "early"] {
@@ -49,9 +49,9 @@ fn elastic_arms(count: usize, method: &Value) -> Value {
 #[test]
 fn gradients_of_elastic_bodies_through_events_are_exact() {
     let methods = [
-        json!({"steps": 60, "method": {"radau": {"stages": 2}}}),
-        json!({"steps": 200, "method": {"bdf": {"order": 2}}}),
-        json!({"steps": 200, "method": {"generalised_alpha": {"radius": 0.6}}}),
+        json!({"steps": 150, "method": {"radau": {"stages": 2}}}),
+        json!({"steps": 300, "method": {"bdf": {"order": 2}}}),
+        json!({"steps": 300, "method": {"generalised_alpha": {"radius": 0.6}}}),
     ];
     for method in &methods {
         for count in [1, 5] {
@@ -62,8 +62,11 @@ fn gradients_of_elastic_bodies_through_events_are_exact() {
     let own = problem(&elastic_arms(5, &methods[0]));
     for (k, [before, after]) in jumps(&simulated(&own)).into_iter().enumerate() {
         match k {
-            1 => assert!(before - after > 0.01 * before, "{before} {after}"),
-            _ => assert!((before - after).abs() < 1e-6 * before, "{k}: {before} {after}"),
+            1 => assert!(before - after > 1e-3 * before, "{before} {after}"),
+            _ => assert!(
+                (before - after).abs() < 1e-6 * before,
+                "{k}: {before} {after}"
+            ),
         }
     }
 }
@@ -76,12 +79,18 @@ fn marks_change_nothing_of_elastic_bodies() {
     remove(&mut with, "functions", "early");
     remove(&mut with, "variables", "off");
     let mut without = with.clone();
-    without.as_object_mut().expect("a document").shift_remove("events");
+    without
+        .as_object_mut()
+        .expect("a document")
+        .shift_remove("events");
     let (with, without) = (problem(&with), problem(&without));
     let (at, single) = (simulated(&with), simulated(&without));
     for name in ["x", "turn", "work", "speed", "peak", "bends"] {
         let f = without.function_names.iter().position(|own| own == name);
-        let (a, b) = (at.value(number(&with, name)), single.value(f.expect("a function")));
+        let (a, b) = (
+            at.value(number(&with, name)),
+            single.value(f.expect("a function")),
+        );
         assert!((a - b).abs() < 1e-6 * b.abs().max(0.01), "{name}: {a} {b}");
     }
 }
@@ -95,7 +104,8 @@ fn events_in_cases_are_those_of_single_files() {
         "light": {"set": {"/bodies/upper/mass": 1.5}},
         "late": {"set": {"/events/free/when/time": 0.6, "/loads/spring/spring/damping": 1.0}}
     });
-    document["functions"]["worst"] = json!({"over_cases": {"function": "x", "by": {"ks": {"rho": 5}}}});
+    document["functions"]["worst"] =
+        json!({"over_cases": {"function": "x", "by": {"ks": {"rho": 5}}}});
     let own = problem(&document);
     let at = simulated(&own);
     let value = |name: &str| {
@@ -104,7 +114,13 @@ fn events_in_cases_are_those_of_single_files() {
     };
     let changes: [(&str, &[(&str, f64)]); 2] = [
         ("light", &[("/bodies/upper/mass", 1.5)]),
-        ("late", &[("/events/free/when/time", 0.6), ("/loads/spring/spring/damping", 1.0)]),
+        (
+            "late",
+            &[
+                ("/events/free/when/time", 0.6),
+                ("/loads/spring/spring/damping", 1.0),
+            ],
+        ),
     ];
     for (case, set) in changes {
         let mut single = base.clone();
@@ -115,7 +131,11 @@ fn events_in_cases_are_those_of_single_files() {
         let alone = simulated(&single);
         for f in whole(&single) {
             let name = &single.function_names[f];
-            assert_eq!(alone.value(f), value(&format!("{name} in {case}")), "{name} in {case}");
+            assert_eq!(
+                alone.value(f),
+                value(&format!("{name} in {case}")),
+                "{name} in {case}"
+            );
         }
     }
     gradients_are_exact(&own, &json!("cases"));
@@ -145,7 +165,7 @@ fn drives_come_on_where_their_joints_are() {
         "functions": {
             "angle": {"final": {"angle": {"joint": "axle"}}},
             "caught": {"value": {"at": {"event": "free"}, "of": {"angle": {"joint": "axle"}}}},
-            "holds": {"value": {"at": {"event": "free"}, "of": {"drive_torque": {"joint": "axle"}}}},
+            "holds": {"value": {"at": {"event": "free"}, "of": {"joint_moment": {"joint": "axle", "direction": [0, 0, 1]}}}},
             "rate": {"final": {"angle_rate": {"joint": "axle"}}}
         },
         "variables": {
@@ -163,19 +183,38 @@ fn drives_come_on_where_their_joints_are() {
     let wave = |t: f64| amplitude * (std::f64::consts::TAU * frequency * t).sin();
     let caught = 0.5 * torque / about * t1 * t1 + rate * (t2 - t1);
     let angle = caught + rate * (t3 - t2) + wave(t) - wave(t3);
-    let wave_rate = amplitude * std::f64::consts::TAU * frequency
+    let wave_rate = amplitude
+        * std::f64::consts::TAU
+        * frequency
         * (std::f64::consts::TAU * frequency * t).cos();
-    let expected = [("angle", angle), ("caught", caught), ("holds", -torque), ("rate", wave_rate)];
+    let expected = [
+        ("angle", angle),
+        ("caught", caught),
+        ("holds", -torque),
+        ("rate", wave_rate),
+    ];
     for (name, expected) in expected {
         let off = (value(name) - expected).abs();
-        assert!(off < 1e-8 * expected.abs(), "{name} {} {expected}", value(name));
+        assert!(
+            off < 1e-8 * expected.abs(),
+            "{name} {} {expected}",
+            value(name)
+        );
     }
     assert!(caught > 20.0);
     let found = check(&own, &own.start()).expect("derivatives");
     let of = |name: &str, variable: &str| {
         let f = number(&own, name);
-        let i = own.variables().iter().position(|v| v.name == variable).expect("a variable");
-        found.iter().find(|d| (d.function, d.variable) == (f, i)).expect("a derivative").adjoint
+        let i = own
+            .variables()
+            .iter()
+            .position(|v| v.name == variable)
+            .expect("a variable");
+        found
+            .iter()
+            .find(|d| (d.function, d.variable) == (f, i))
+            .expect("a derivative")
+            .adjoint
     };
     let by_catch = torque / about * t1 - rate;
     assert!((of("angle", "catch") - by_catch).abs() < 1e-8 * by_catch.abs());
@@ -187,12 +226,8 @@ fn drives_come_on_where_their_joints_are() {
 /// A gear goes on coupling while loads and joints elsewhere change, over turns.
 #[test]
 fn couplings_hold_through_events() {
-    let wheel = |radius: f64, x: f64| {
-        json!({"shape": {"cylinder": {"radius": radius, "length": 0.02}}, "mass": 2, "place": {"at": [x, 0, 0]}})
-    };
-    let hinge = |name: &str, x: f64| {
-        json!({"revolute": {"between": [name, "ground"], "at": [x, 0, 0], "axis": [0, 0, 1]}})
-    };
+    let wheel = |radius: f64, x: f64| json!({"shape": {"cylinder": {"radius": radius, "length": 0.02}}, "mass": 2, "place": {"at": [x, 0, 0]}});
+    let hinge = |name: &str, x: f64| json!({"revolute": {"between": [name, "ground"], "at": [x, 0, 0], "axis": [0, 0, 1]}});
     let base = json!({
         "version": 1, "name": "gears", "gravity": [0, 0, 0],
         "bodies": {"large": wheel(0.2, 0.0), "small": wheel(0.1, 0.3), "disk": wheel(0.1, 0.3)},
@@ -226,23 +261,32 @@ fn couplings_hold_through_events() {
     let (alone, joined) = (large + 4.0 * small, large + 8.0 * small);
     let rate = m / alone * 0.8 * alone / joined;
     let (first, then) = (0.5 * m / alone * 0.64, 0.7_f64);
-    let end = first + rate * then + 0.5 * m / joined * then * then
-        + (rate + m / joined * then) * 0.5;
+    let end =
+        first + rate * then + 0.5 * m / joined * then * then + (rate + m / joined * then) * 0.5;
     assert!(end > 20.0);
     let off = |name: &str, expected: f64| {
         let own = value(name);
-        assert!((own - expected).abs() < 1e-8 * expected.abs(), "{name} {own} {expected}");
+        assert!(
+            (own - expected).abs() < 1e-8 * expected.abs(),
+            "{name} {own} {expected}"
+        );
     };
     off("large", end);
     off("small", -2.0 * end);
     off("disk", -2.0 * (end - first));
     gradients_are_exact(&own, &json!("gears"));
     let mut opened = base.clone();
+    opened["couplings"]["mesh"]["gear"]["carrier"] = json!("ground");
     opened["events"]["stop"]["off"] = json!(["small hinge"]);
     let Err(found) = Problem::parse(&opened.to_string(), "gears.json", &[]) else {
         panic!("a gear without its hinge");
     };
-    assert!(found.to_string().contains("a joint through which no coupling goes"), "{found}");
+    assert!(
+        found
+            .to_string()
+            .contains("which no joints join to \"ground\" in all phases of the motion"),
+        "{found}"
+    );
 }
 
 /// The same machine with lengths in mm, masses in g, forces in mN, and mirrored in x: equal motions.
@@ -260,8 +304,14 @@ fn other_units_and_mirrored_machines_move_alike() {
     }
     scale(&mut small["gravity"], 1e3);
     // N m are 1e9 g mm²/s²; N are 1e6 g mm/s²; N/m are 1e3 g/s².
-    scale(&mut small["loads"]["motor"]["torque"]["magnitude"]["harmonic"]["amplitude"], 1e9);
-    scale(&mut small["loads"]["wind"]["force"]["magnitude"]["harmonic"]["amplitude"], 1e6);
+    scale(
+        &mut small["loads"]["motor"]["torque"]["magnitude"]["harmonic"]["amplitude"],
+        1e9,
+    );
+    scale(
+        &mut small["loads"]["wind"]["force"]["magnitude"]["harmonic"]["amplitude"],
+        1e6,
+    );
     let spring = &mut small["loads"]["spring"]["spring"];
     scale(&mut spring["at"]["b"], 1e3);
     scale(&mut spring["rest_length"], 1e3);
@@ -275,8 +325,16 @@ fn other_units_and_mirrored_machines_move_alike() {
     mirror(&mut mirrored);
     let energy = 1e9;
     let all = [
-        ("units", small, [1e3, 1.0, energy, 1e6, 1e6, 1e3, 1.0, energy]),
-        ("mirrored", mirrored, [-1.0, -1.0, 1.0, 1.0, 1.0, 1.0, 1.0, 1.0]),
+        (
+            "units",
+            small,
+            [1e3, 1.0, energy, 1e6, 1e6, 1e3, 1.0, energy],
+        ),
+        (
+            "mirrored",
+            mirrored,
+            [-1.0, -1.0, 1.0, 1.0, 1.0, 1.0, 1.0, 1.0],
+        ),
     ];
     for (what, other, factors) in all {
         let other = problem(&other);
@@ -303,7 +361,9 @@ fn scale(value: &mut Value, by: f64) {
 /// Mirrors the machine in the plane x = 0: turns about z change their sign.
 fn mirror(document: &mut Value) {
     for body in ["upper", "lower"] {
-        let points = document["bodies"][body]["points"].as_object_mut().expect("points");
+        let points = document["bodies"][body]["points"]
+            .as_object_mut()
+            .expect("points");
         points.values_mut().for_each(|own| scale(&mut own[0], -1.0));
     }
     let paths = [
@@ -322,12 +382,8 @@ fn mirror(document: &mut Value) {
 /// Two events at one time are refused, whichever is the first in the file; the same height twice is not.
 #[test]
 fn events_at_once_are_named() {
-    let height = |level: f64| {
-        json!({"measure": {"position": {"body": "ball", "direction": [0, 1, 0]}}, "reaches": level})
-    };
-    let way = |level: f64| {
-        json!({"measure": {"position": {"body": "ball", "direction": [1, 0, 0]}}, "reaches": level})
-    };
+    let height = |level: f64| json!({"measure": {"position": {"body": "ball", "direction": [0, 1, 0]}}, "reaches": level});
+    let way = |level: f64| json!({"measure": {"position": {"body": "ball", "direction": [1, 0, 0]}}, "reaches": level});
     let throw = |first: Value, second: Value| {
         json!({
             "version": 1, "name": "throw", "gravity": [0, -10, 0],

@@ -69,6 +69,7 @@ pub fn motion(designs: &[Motion], scenery: &Scenery) -> Result<String, FigureErr
             .ends
             .iter()
             .flat_map(move |ends| ends[..count].to_vec())
+            .filter(|point| point.iter().all(|x| x.is_finite()))
     }));
     let flights: Vec<Option<Vec<Point>>> = designs
         .iter()

@@ -60,7 +60,8 @@ impl<S: Scalar> Model<S> {
     /// Shifts the courses of the drives of a joint so that they begin where the poses of its bodies are.
     pub fn resume_drives(&mut self, joint: usize) {
         let own = &self.joints[joint];
-        let place = |drive: &Drive<S>| self.place_of(own, drive.dof) - drive.course.value(S::zero());
+        let place =
+            |drive: &Drive<S>| self.place_of(own, drive.dof) - drive.course.value(S::zero());
         let shifts: Vec<S> = own.drives.iter().map(place).collect();
         for (drive, by) in self.joints[joint].drives.iter_mut().zip(shifts) {
             drive.course = drive.course.shifted(by);

@@ -161,7 +161,13 @@ impl Checker<'_> {
         let bars = |joint: &&Joint| !moves(joint) && !matches!(joint, Joint::Weld(_));
         let moving = passed().filter(|joint| moves(joint)).count();
         let found = match passed().find(bars) {
-            _ if way.is_empty() => format!("\"{body}\", which no joints join to \"{carrier}\""),
+            _ if way.is_empty() => {
+                let kept = match self.document.events.is_empty() {
+                    true => "",
+                    false => " in all phases of the motion",
+                };
+                format!("\"{body}\", which no joints join to \"{carrier}\"{kept}")
+            }
             Some(joint) => {
                 let [a, b] = ordered(joint);
                 let kind = joint.kind().name();

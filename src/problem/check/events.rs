@@ -1,7 +1,6 @@
 //! Events that change the machine.
 
 use super::Checker;
-use crate::couplings::moved;
 use crate::finding::Finding;
 use crate::pointer::{advice, join};
 use crate::schema::couplings::Coupling;
@@ -129,14 +128,15 @@ impl Checker<'_> {
                 let expected = "a joint without a start: it is open then";
                 fault(format!("the joint {said} with a start"), expected);
             }
-            let ends = joint.between();
-            let couples = |coupling: &Coupling| {
-                let mut all = moved(coupling).into_iter();
-                all.any(|(own, _)| own == name || ends.iter().any(|end| *end == *own))
+            let couples = |coupling: &Coupling| match coupling {
+                Coupling::Screw(own) => own.joint == name,
+                Coupling::Relation(own) => own.terms.iter().any(|term| term.joint == name),
+                // Ways to wheels and racks leave out what events switch.
+                _ => false,
             };
             let mut all = document.couplings.iter();
             if let Some((coupling, _)) = all.find(|(_, own)| couples(own)) {
-                let found = format!("the joint {said}, which holds what \"{coupling}\" couples");
+                let found = format!("the joint {said}, which \"{coupling}\" couples");
                 fault(found, "a joint through which no coupling goes");
             }
         }

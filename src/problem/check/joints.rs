@@ -170,7 +170,8 @@ impl Checker<'_> {
             let twice = earlier.into_iter().find(|(earlier, other)| {
                 let both = |a: bool, b: bool| a && b;
                 let mut phases = 0..=document.events.len();
-                let together = |phase| document.is_on(earlier, phase) && document.is_on(name, phase);
+                let together =
+                    |phase| document.is_on(earlier, phase) && document.is_on(name, phase);
                 other.joint == drive.joint
                     && phases.any(together)
                     && (both(other.turn.is_some(), drive.turn.is_some())
