@@ -40,3 +40,24 @@ fn two_masses_slew_in_the_shortest_time() {
         assert!((own - published).abs() < 5e-4, "{own} {published}");
     }
 }
+
+/// The reach of two links with the least effort, against the conditions of Pontryagin, solved by collocation to 1e-8: 44.916750
+/// N² m² s. Torques of straight lines between 21 nodes are nearly as good, and cannot be better.
+#[test]
+fn two_links_reach_with_the_least_effort() {
+    let own = problem(&benchmark("two_link_reach"));
+    let done = optimised(&own);
+    assert_eq!(done.outcome.status, Status::Converged);
+    let last = done.history.rows.last().expect("iterations");
+    let least = 44.916_749_6;
+    assert!(
+        last.objective > least && last.objective < least * (1.0 + 2e-5),
+        "{}",
+        last.objective
+    );
+    // The torques at the start, nearly.
+    for (node, torque) in [(0, 4.874_301), (21, 10.535_248)] {
+        let found = last.design[node];
+        assert!((found - torque).abs() < 0.03 * torque, "{found} {torque}");
+    }
+}
