@@ -96,11 +96,15 @@ __all__ = [
     "Interpolation",
     "TorqueInTime",
     "VaryingTorque",
+    "ForceTable",
     "Motion",
     "BushingStiffness",
     "BushingDamping",
     "Surface2",
     "ContactFriction",
+    "CablePoint",
+    "CableLength",
+    "Sliding",
     "PressureInTime",
     "VaryingPressure",
     "LineForceInTime",
@@ -115,7 +119,6 @@ __all__ = [
     "Curve",
     "Drive",
     "Turning",
-    "Sliding",
     "Coupling",
     "Term",
     "TerminalEvent",
@@ -204,10 +207,13 @@ __all__ = [
     "loads",
     "varying_forces",
     "varying_torques",
+    "force_table",
     "bushing_stiffnesses",
     "bushing_dampings",
     "surface2s",
     "contact_friction",
+    "cable_point",
+    "sliding",
     "varying_pressures",
     "varying_line_forces",
     "followings",
@@ -218,7 +224,6 @@ __all__ = [
     "curve",
     "drive",
     "turning",
-    "sliding",
     "couplings",
     "term",
     "terminal_event",
@@ -510,7 +515,7 @@ class SlideStart(Part):
 
 
 class Load(Part):
-    """A force, torque, spring, damper, bushing, friction, drag, stop, contact or controller. Made by `loads`."""
+    """A force, torque, spring, damper, bushing, friction, drag, stop, contact, cable or controller. Made by `loads`."""
 
     __slots__ = ()
 
@@ -523,6 +528,14 @@ class VaryingForce(Part):
 
 class VaryingTorque(Part):
     """Function of time: a torque. Made by `varying_torques`."""
+
+    __slots__ = ()
+
+
+class ForceTable(Part):
+    """Forces or torques over a stretch, an angle or a rate. It goes on straight beyond both ends. Made by
+    `force_table`.
+    """
 
     __slots__ = ()
 
@@ -547,6 +560,18 @@ class Surface2(Part):
 
 class ContactFriction(Part):
     """Friction of a contact. Made by `contact_friction`."""
+
+    __slots__ = ()
+
+
+class CablePoint(Part):
+    """A point of a cable. Made by `cable_point`."""
+
+    __slots__ = ()
+
+
+class Sliding(Part):
+    """Function of time: a displacement. Made by `sliding`."""
 
     __slots__ = ()
 
@@ -611,12 +636,6 @@ class Drive(Part):
 
 class Turning(Part):
     """Function of time: an angle. Made by `turning`."""
-
-    __slots__ = ()
-
-
-class Sliding(Part):
-    """Function of time: a displacement. Made by `sliding`."""
 
     __slots__ = ()
 
@@ -832,6 +851,9 @@ TorqueInTime: TypeAlias = Union[Real, VaryingTorque]
 
 Motion: TypeAlias = Literal["turn", "slide"]
 """A degree of freedom of a joint."""
+
+CableLength: TypeAlias = Union[Real, Sliding]
+"""Length of a cable."""
 
 PressureInTime: TypeAlias = Union[Real, VaryingPressure]
 """Magnitude of a pressure."""
@@ -1665,6 +1687,25 @@ def slide_start(*, displacement: Real | None = None, rate: Real | None = None) -
 
 
 @checked
+def force_table(*, places: Vector, forces: Vector, interpolation: Interpolation | None = None) -> ForceTable:
+    """Forces or torques over a stretch, an angle or a rate. It goes on straight beyond both ends.
+
+    Parameters
+    ----------
+    places : numbers, shape (n,) [m, rad, m/s or rad/s]
+        Stretches, angles or rates, increasing.
+    forces : numbers, shape (n,) [N or N m]
+        Force or torque at each.
+    interpolation : "linear" or "monotone" or "spline", optional
+        Interpolation between the forces, default monotone.
+        "linear": Straight lines. Those of a motion are rounded at their ends, so accelerations stay finite.
+        "monotone": Smooth without overshoot.
+        "spline": As smooth as the values. It may overshoot.
+    """
+    return made(ForceTable, "force_table", locals())
+
+
+@checked
 def contact_friction(*, coefficient: Real, width: Real) -> ContactFriction:
     """Friction of a contact.
 
@@ -1677,6 +1718,22 @@ def contact_friction(*, coefficient: Real, width: Real) -> ContactFriction:
         width is sharper and needs finer steps.
     """
     return made(ContactFriction, "contact_friction", locals())
+
+
+@checked
+def cable_point(*, body: str, point: Point | None = None) -> CablePoint:
+    """A point of a cable.
+
+    Parameters
+    ----------
+    body : text
+        Its body, which may be "ground".
+    point : text or numbers, shape (3,) [m], optional
+        The point, by name or in body axes (ground coordinates if it is ground); default the centre of mass.
+        text: Name of one of the body's points.
+        numbers, shape (3,) [m]: Coordinates in body axes from their origin.
+    """
+    return made(CablePoint, "cable_point", locals())
 
 
 @checked
@@ -2886,7 +2943,7 @@ class joints(Kinds):
 
 
 class loads(Kinds):
-    """A force, torque, spring, damper, bushing, friction, drag, stop, contact or controller."""
+    """A force, torque, spring, damper, bushing, friction, drag, stop, contact, cable or controller."""
 
     @staticmethod
     @checked
@@ -2964,11 +3021,14 @@ class loads(Kinds):
         between: Sequence[str],
         at: Ends,
         rest_length: Real,
-        stiffness: Real,
+        stiffness: Real | None = None,
         cubic: Real | None = None,
         damping: Real | None = None,
+        table: ForceTable | None = None,
+        damping_table: ForceTable | None = None,
     ) -> Load:
-        """A spring with a damper between points of two bodies. The tension is k x + k3 x³ + c l̇, with x = l − l0.
+        """A spring with a damper between points of two bodies. The tension is k x + k3 x³ + c l̇ and that of tables,
+        with x = l − l0.
 
         Parameters
         ----------
@@ -2980,12 +3040,16 @@ class loads(Kinds):
             `point_pair(…)`: One point on each body.
         rest_length : number at least 0 [m]
             Length at zero force.
-        stiffness : number at least 0 [N/m]
-            Stiffness k.
+        stiffness : number at least 0 [N/m], optional
+            Stiffness k, default 0 with a table.
         cubic : number [N/m³], optional
             Cubic stiffness k3, default 0.
         damping : number at least 0 [N s/m], optional
             Damping c, default 0.
+        table : `force_table(…)`, optional
+            Tension over the stretch x, besides that of the stiffness; default none.
+        damping_table : `force_table(…)`, optional
+            Tension over the rate l̇, besides that of the damping; default none.
         """
         return made(Load, "loads.spring", locals())
 
@@ -2994,10 +3058,12 @@ class loads(Kinds):
     def torsion_spring(
         *,
         joint: str,
-        stiffness: Real,
         rest_angle: Real | None = None,
+        stiffness: Real | None = None,
         cubic: Real | None = None,
         damping: Real | None = None,
+        table: ForceTable | None = None,
+        damping_table: ForceTable | None = None,
     ) -> Load:
         """A spring with a damper about the axis of a revolute or planar joint.
 
@@ -3005,33 +3071,46 @@ class loads(Kinds):
         ----------
         joint : text
             Name of a revolute, planar or cylindrical joint.
-        stiffness : number at least 0 [N m/rad]
-            Stiffness.
         rest_angle : number [rad], optional
             Angle at zero torque: of the first body relative to the second (ground counts as the second) about the
             axis, from the placement; default 0.
+        stiffness : number at least 0 [N m/rad], optional
+            Stiffness, default 0 with a table.
         cubic : number [N m/rad³], optional
             Cubic stiffness k3 of the torque k x + k3 x³, default 0.
         damping : number at least 0 [N m s/rad], optional
             Damping, default 0.
+        table : `force_table(…)`, optional
+            Torque over the angle from rest, besides that of the stiffness; default none.
+        damping_table : `force_table(…)`, optional
+            Torque over the rate of the angle, besides that of the damping; default none.
         """
         return made(Load, "loads.torsion_spring", locals())
 
     @staticmethod
     @checked
-    def damping(*, joint: str, coefficient: Real, motion: Motion | None = None) -> Load:
+    def damping(
+        *,
+        joint: str,
+        motion: Motion | None = None,
+        coefficient: Real | None = None,
+        table: ForceTable | None = None,
+    ) -> Load:
         """Viscous damping in a joint.
 
         Parameters
         ----------
         joint : text
             Name of a revolute, prismatic, cylindrical, planar, spherical or universal joint.
-        coefficient : number at least 0 [N s/m or N m s/rad]
-            Force or torque per unit of rate.
         motion : "turn" or "slide", optional
             Motion of a cylindrical joint, default rotation.
             "turn": Rotation about its axis.
             "slide": Displacement along its axis.
+        coefficient : number at least 0 [N s/m or N m s/rad], optional
+            Force or torque per unit of rate, default 0 with a table.
+        table : `force_table(…)`, optional
+            Force or torque over the rate, besides that of the coefficient; default none. Not of a spherical or
+            universal joint.
         """
         return made(Load, "loads.damping", locals())
 
@@ -3182,6 +3261,36 @@ class loads(Kinds):
             Friction, default none.
         """
         return made(Load, "loads.contact", locals())
+
+    @staticmethod
+    @checked
+    def cable(
+        *,
+        points: Sequence[CablePoint],
+        length: CableLength,
+        stiffness: Real,
+        width: Real,
+        dissipation: Real | None = None,
+    ) -> Load:
+        """A cable over frictionless pulleys, or a winch. It pulls and never presses.
+
+        Parameters
+        ----------
+        points : list of `cable_point(…)`
+            Its points in order: two ends with pulleys between them.
+        length : number above 0 [m] or one of `sliding`
+            Length L0 at which it is just slack: a number, or a function of time that a winch follows.
+            number above 0 [m]: The same at all times.
+            one of `sliding`: A function of time.
+        stiffness : number above 0 [N/m]
+            Stiffness k of the whole cable: force per stretch.
+        width : number above 0 [m]
+            Width w of the onset, from w/2 before the cable is taut to w/2 behind it. A smaller width is sharper and
+            needs finer steps.
+        dissipation : number at least 0 [s/m], optional
+            Dissipation c: the tension grows by ³⁄₂ c times the rate of the stretch; default 0.
+        """
+        return made(Load, "loads.cable", locals())
 
     @staticmethod
     @checked
@@ -3528,6 +3637,97 @@ class surface2s(Kinds):
         return made(Surface2, "surface2s.capsule", locals())
 
 
+class sliding(Kinds):
+    """Function of time: a displacement."""
+
+    @staticmethod
+    @checked
+    def rate(value: Real, /) -> Sliding:
+        """Constant rate, starting at zero.
+
+        Parameters
+        ----------
+        value : number [m/s]
+        """
+        return made_of(Sliding, "sliding.rate", value)
+
+    @staticmethod
+    @checked
+    def polynomial(value: Vector, /) -> Sliding:
+        """Coefficients c0, c1, c2, … of c0 + c1 t + c2 t² + …
+
+        Parameters
+        ----------
+        value : numbers, shape (n,) [m, m/s, m/s², …]
+        """
+        return made_of(Sliding, "sliding.polynomial", value)
+
+    @staticmethod
+    @checked
+    def harmonic(*, amplitude: Real, frequency: Real, phase: Real | None = None, mean: Real | None = None) -> Sliding:
+        """mean + amplitude · sin(2π frequency t + phase).
+
+        Parameters
+        ----------
+        amplitude : number [m]
+            Amplitude.
+        frequency : number [Hz]
+            Frequency.
+        phase : number [rad], optional
+            Phase at t = 0, default 0.
+        mean : number [m], optional
+            Mean, default 0.
+        """
+        return made(Sliding, "sliding.harmonic", locals())
+
+    @staticmethod
+    @checked
+    def table(*, times: Vector, values: Vector, interpolation: Interpolation | None = None) -> Sliding:
+        """Interpolation with continuous acceleration. It is at rest at both ends and constant beyond.
+
+        Parameters
+        ----------
+        times : numbers, shape (n,) [s]
+            Instants, increasing.
+        values : numbers, shape (n,) [m]
+            Value at each instant.
+        interpolation : "linear" or "monotone" or "spline", optional
+            Interpolation between the values, default monotone.
+            "linear": Straight lines. Those of a motion are rounded at their ends, so accelerations stay finite.
+            "monotone": Smooth without overshoot.
+            "spline": As smooth as the values. It may overshoot.
+        """
+        return made(Sliding, "sliding.table", locals())
+
+    @staticmethod
+    @checked
+    def s_curve(
+        *,
+        to: Real,
+        speed: Real,
+        acceleration: Real,
+        from_: Real | None = None,
+        start: Real | None = None,
+    ) -> Sliding:
+        """A way from one value to another within a speed and an acceleration, at rest before and after it. Its jerk is
+        continuous.
+
+        Parameters
+        ----------
+        to : number [m]
+            Value behind it, another one.
+        speed : number above 0 [m/s]
+            Largest speed. A short way does not reach it.
+        acceleration : number above 0 [m/s²]
+            Largest acceleration.
+        from_ : number [m], optional
+            Value before it, default 0.
+        start : number [s], optional
+            Instant at which it starts, default 0.
+        """
+        return made(Sliding, "sliding.s_curve", locals())
+
+
 class varying_pressures(Kinds):
     """Function of time: a pressure."""
 
@@ -3831,97 +4031,6 @@ class turning(Kinds):
             Instant at which it starts, default 0.
         """
         return made(Turning, "turning.s_curve", locals())
-
-
-class sliding(Kinds):
-    """Function of time: a displacement."""
-
-    @staticmethod
-    @checked
-    def rate(value: Real, /) -> Sliding:
-        """Constant rate, starting at zero.
-
-        Parameters
-        ----------
-        value : number [m/s]
-        """
-        return made_of(Sliding, "sliding.rate", value)
-
-    @staticmethod
-    @checked
-    def polynomial(value: Vector, /) -> Sliding:
-        """Coefficients c0, c1, c2, … of c0 + c1 t + c2 t² + …
-
-        Parameters
-        ----------
-        value : numbers, shape (n,) [m, m/s, m/s², …]
-        """
-        return made_of(Sliding, "sliding.polynomial", value)
-
-    @staticmethod
-    @checked
-    def harmonic(*, amplitude: Real, frequency: Real, phase: Real | None = None, mean: Real | None = None) -> Sliding:
-        """mean + amplitude · sin(2π frequency t + phase).
-
-        Parameters
-        ----------
-        amplitude : number [m]
-            Amplitude.
-        frequency : number [Hz]
-            Frequency.
-        phase : number [rad], optional
-            Phase at t = 0, default 0.
-        mean : number [m], optional
-            Mean, default 0.
-        """
-        return made(Sliding, "sliding.harmonic", locals())
-
-    @staticmethod
-    @checked
-    def table(*, times: Vector, values: Vector, interpolation: Interpolation | None = None) -> Sliding:
-        """Interpolation with continuous acceleration. It is at rest at both ends and constant beyond.
-
-        Parameters
-        ----------
-        times : numbers, shape (n,) [s]
-            Instants, increasing.
-        values : numbers, shape (n,) [m]
-            Value at each instant.
-        interpolation : "linear" or "monotone" or "spline", optional
-            Interpolation between the values, default monotone.
-            "linear": Straight lines. Those of a motion are rounded at their ends, so accelerations stay finite.
-            "monotone": Smooth without overshoot.
-            "spline": As smooth as the values. It may overshoot.
-        """
-        return made(Sliding, "sliding.table", locals())
-
-    @staticmethod
-    @checked
-    def s_curve(
-        *,
-        to: Real,
-        speed: Real,
-        acceleration: Real,
-        from_: Real | None = None,
-        start: Real | None = None,
-    ) -> Sliding:
-        """A way from one value to another within a speed and an acceleration, at rest before and after it. Its jerk is
-        continuous.
-
-        Parameters
-        ----------
-        to : number [m]
-            Value behind it, another one.
-        speed : number above 0 [m/s]
-            Largest speed. A short way does not reach it.
-        acceleration : number above 0 [m/s²]
-            Largest acceleration.
-        from_ : number [m], optional
-            Value before it, default 0.
-        start : number [s], optional
-            Instant at which it starts, default 0.
-        """
-        return made(Sliding, "sliding.s_curve", locals())
 
 
 class couplings(Kinds):
@@ -5800,14 +5909,14 @@ class MachineKeys(Document):
     def add_load(self, name: str, kind: Load) -> Name:
         """Adds a load.
 
-        A force, torque, spring, damper, bushing, friction, drag, stop, contact or controller.
+        A force, torque, spring, damper, bushing, friction, drag, stop, contact, cable or controller.
 
         Parameters
         ----------
         name : text
             Its name among the `loads`.
         kind : one of `loads`
-            A force, torque, spring, damper, bushing, friction, drag, stop, contact or controller.
+            A force, torque, spring, damper, bushing, friction, drag, stop, contact, cable or controller.
         """
         return Name(name, self._add("loads", "load", name, kind))
 

@@ -1,6 +1,7 @@
 //! Loads in a file.
 
 use super::controllers::Controller;
+use super::drives::Sliding;
 use super::joints::Ends;
 pub use super::magnitudes::{
     ForceInTime, Interpolation, LineForceInTime, Motion, PressureInTime, TimeFunction, TorqueInTime,
@@ -10,7 +11,7 @@ use crate::quantity::{Quantity, Vector};
 use schemars::JsonSchema;
 use serde::Deserialize;
 
-/// A force, torque, spring, damper, bushing, friction, drag, stop, contact or controller.
+/// A force, torque, spring, damper, bushing, friction, drag, stop, contact, cable or controller.
 #[derive(Clone, Debug, Deserialize, JsonSchema)]
 #[serde(rename_all = "snake_case", deny_unknown_fields)]
 pub enum Load {
@@ -18,7 +19,7 @@ pub enum Load {
     Force(Force),
     /// A torque on a body.
     Torque(Torque),
-    /// A spring with a damper between points of two bodies. The tension is k x + k3 x³ + c l̇, with
+    /// A spring with a damper between points of two bodies. The tension is k x + k3 x³ + c l̇ and that of tables, with
     /// x = l − l0.
     Spring(Spring),
     /// A spring with a damper about the axis of a revolute or planar joint.
@@ -35,6 +36,8 @@ pub enum Load {
     Stop(Stop),
     /// A contact of a sphere or point of a body with a plane, sphere or capsule, with friction.
     Contact(Contact),
+    /// A cable over frictionless pulleys, or a winch. It pulls and never presses.
+    Cable(Cable),
     /// A pressure on shells of a body of `elements`, along the normals of the deformed surface.
     Pressure(Pressure),
     /// A force per area on shells of a body of `elements`, in a fixed direction.
@@ -113,9 +116,9 @@ pub struct Spring {
     /// Length at zero force.
     #[schemars(extend("unit" = "m", "minimum" = 0))]
     pub rest_length: Quantity,
-    /// Stiffness k.
+    /// Stiffness k, default 0 with a table.
     #[schemars(extend("unit" = "N/m", "minimum" = 0))]
-    pub stiffness: Quantity,
+    pub stiffness: Option<Quantity>,
     /// Cubic stiffness k3, default 0.
     #[serde(default = "nothing")]
     #[schemars(extend("unit" = "N/m³"))]
@@ -124,6 +127,27 @@ pub struct Spring {
     #[serde(default = "nothing")]
     #[schemars(extend("unit" = "N s/m", "minimum" = 0))]
     pub damping: Quantity,
+    /// Tension over the stretch x, besides that of the stiffness; default none.
+    pub table: Option<ForceTable>,
+    /// Tension over the rate l̇, besides that of the damping; default none.
+    pub damping_table: Option<ForceTable>,
+}
+
+/// Forces or torques over a stretch, an angle or a rate. It goes on straight beyond both ends.
+#[derive(Clone, Debug, Deserialize, JsonSchema)]
+#[serde(deny_unknown_fields)]
+pub struct ForceTable {
+    /// Stretches, angles or rates, increasing.
+    #[schemars(extend(
+        "unit" = "m, rad, m/s or rad/s",
+        "design_variable" = "the places of a table keep their order; design its forces"
+    ))]
+    pub places: Vec<f64>,
+    /// Force or torque at each.
+    #[schemars(extend("unit" = "N or N m"))]
+    pub forces: Vec<Quantity>,
+    /// Interpolation between the forces, default monotone.
+    pub interpolation: Option<Interpolation>,
 }
 
 /// A spring with a damper about the axis of a joint.
@@ -137,9 +161,9 @@ pub struct TorsionSpring {
     #[serde(default = "nothing")]
     #[schemars(extend("unit" = "rad"))]
     pub rest_angle: Quantity,
-    /// Stiffness.
+    /// Stiffness, default 0 with a table.
     #[schemars(extend("unit" = "N m/rad", "minimum" = 0))]
-    pub stiffness: Quantity,
+    pub stiffness: Option<Quantity>,
     /// Cubic stiffness k3 of the torque k x + k3 x³, default 0.
     #[serde(default = "nothing")]
     #[schemars(extend("unit" = "N m/rad³"))]
@@ -148,6 +172,10 @@ pub struct TorsionSpring {
     #[serde(default = "nothing")]
     #[schemars(extend("unit" = "N m s/rad", "minimum" = 0))]
     pub damping: Quantity,
+    /// Torque over the angle from rest, besides that of the stiffness; default none.
+    pub table: Option<ForceTable>,
+    /// Torque over the rate of the angle, besides that of the damping; default none.
+    pub damping_table: Option<ForceTable>,
 }
 
 /// Viscous damping in a joint.
@@ -158,9 +186,11 @@ pub struct Damping {
     pub joint: String,
     /// Motion of a cylindrical joint, default rotation.
     pub motion: Option<Motion>,
-    /// Force or torque per unit of rate.
+    /// Force or torque per unit of rate, default 0 with a table.
     #[schemars(extend("unit" = "N s/m or N m s/rad", "minimum" = 0))]
-    pub coefficient: Quantity,
+    pub coefficient: Option<Quantity>,
+    /// Force or torque over the rate, besides that of the coefficient; default none. Not of a spherical or universal joint.
+    pub table: Option<ForceTable>,
 }
 
 /// Linear elastic forces and torques of all relative motion in a joint, with damping: −(K x + C ẋ), x the displacement of its
@@ -387,6 +417,48 @@ pub enum Surface {
     },
 }
 
+/// A cable that runs straight from point to point over pulleys without friction and radius. Its tension is the normal force of
+/// a stop: k ρ ρ' (1 + ³⁄₂ c δ̇), never negative, with the stretch δ = L − L0 and its smooth ramp ρ.
+#[derive(Clone, Debug, Deserialize, JsonSchema)]
+#[serde(deny_unknown_fields)]
+pub struct Cable {
+    /// Its points in order: two ends with pulleys between them.
+    pub points: Vec<CablePoint>,
+    /// Length L0 at which it is just slack: a number, or a function of time that a winch follows.
+    pub length: CableLength,
+    /// Stiffness k of the whole cable: force per stretch.
+    #[schemars(extend("unit" = "N/m", "exclusiveMinimum" = 0))]
+    pub stiffness: Quantity,
+    /// Dissipation c: the tension grows by ³⁄₂ c times the rate of the stretch; default 0.
+    #[serde(default = "nothing")]
+    #[schemars(extend("unit" = "s/m", "minimum" = 0))]
+    pub dissipation: Quantity,
+    /// Width w of the onset, from w/2 before the cable is taut to w/2 behind it. A smaller width is sharper and needs finer steps.
+    #[schemars(extend("unit" = "m", "exclusiveMinimum" = 0))]
+    pub width: Quantity,
+}
+
+/// A point of a cable.
+#[derive(Clone, Debug, Deserialize, JsonSchema)]
+#[serde(deny_unknown_fields)]
+pub struct CablePoint {
+    /// Its body, which may be "ground".
+    pub body: String,
+    /// The point, by name or in body axes (ground coordinates if it is ground); default the centre of mass.
+    pub point: Option<Point>,
+}
+
+/// Length of a cable.
+#[derive(Clone, Debug, Deserialize, JsonSchema)]
+#[serde(untagged)]
+pub enum CableLength {
+    /// The same at all times.
+    #[schemars(extend("unit" = "m", "exclusiveMinimum" = 0))]
+    Constant(Quantity),
+    /// A function of time.
+    Varying(Sliding),
+}
+
 /// A pressure on shells of a body of elements.
 #[derive(Clone, Debug, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
@@ -467,6 +539,7 @@ impl Load {
             Load::Drag(_) => "drag",
             Load::Stop(_) => "stop",
             Load::Contact(_) => "contact",
+            Load::Cable(_) => "cable",
             Load::Pressure(_) => "pressure",
             Load::Area(_) => "area",
             Load::Edge(_) => "edge",

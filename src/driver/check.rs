@@ -13,7 +13,7 @@ use crate::integrate::{IntegrationFailure, Settings, Trajectory};
 use crate::math::Complex64;
 use crate::math::scalar::COMPLEX_STEP;
 use crate::model::flexible::Quadratic;
-use crate::model::{DegreeOfFreedom, LoadKind};
+use crate::model::{DegreeOfFreedom, ForceTable, LoadKind};
 use crate::problem::Problem;
 use crate::system::loads::measured::LoadPart;
 use crate::system::measures::WrenchPart;
@@ -265,8 +265,18 @@ fn size_of_instant(at: &Evaluated, instant: &Instant<f64>) -> f64 {
             }
         }
         Instant::Load(measure) => match (measure.part, &model.loads[measure.load].kind) {
-            (LoadPart::Tension, LoadKind::Spring { stiffness, .. }) => stiffness * length,
-            (LoadPart::Torque, LoadKind::TorsionSpring { stiffness, .. }) => *stiffness,
+            (
+                LoadPart::Tension,
+                LoadKind::Spring {
+                    stiffness, tables, ..
+                },
+            ) => (stiffness + steepest(tables)) * length,
+            (
+                LoadPart::Torque,
+                LoadKind::TorsionSpring {
+                    stiffness, tables, ..
+                },
+            ) => stiffness + steepest(tables),
             (LoadPart::PenetrationAngle | LoadPart::ErrorAngle, _) => 1.0,
             (LoadPart::EffortForce | LoadPart::EffortTorque, _) => {
                 let mass: f64 = model.bodies.iter().map(|body| body.mass).sum();
@@ -276,6 +286,7 @@ fn size_of_instant(at: &Evaluated, instant: &Instant<f64>) -> f64 {
                     _ => force * length,
                 }
             }
+            (LoadPart::Tension, LoadKind::Cable(own)) => own.law.stiffness * length,
             (LoadPart::NormalForce, LoadKind::JointStop { law, .. })
             | (LoadPart::NormalForce, LoadKind::DistanceStop { law, .. }) => law.stiffness * length,
             (LoadPart::NormalForce, LoadKind::Contact(own)) => own.law.stiffness * length,
@@ -286,6 +297,11 @@ fn size_of_instant(at: &Evaluated, instant: &Instant<f64>) -> f64 {
             _ => length,
         },
     }
+}
+
+/// The largest slope of the table of a spring.
+fn steepest(tables: &[Option<ForceTable<f64>>; 2]) -> f64 {
+    tables[0].as_ref().map_or(0.0, ForceTable::steepest)
 }
 
 /// The largest of each elastic coordinate in the motion, or of each of these unknowns of nodes.

@@ -60,6 +60,14 @@ pub(super) fn joined(
     let traces = drawing.traces.iter();
     let mut held: Vec<(usize, Vec3<f64>)> = traces.map(|own| (own.body, own.point)).collect();
     for load in &model.loads {
+        if let LoadKind::Cable(own) = &load.kind {
+            for part in own.points.windows(2) {
+                let ends = |k| [&part[0], &part[1]].map(|own| place(k, &(own.body, own.point)));
+                add(ConnectorKind::Rod, part[1].body.is_none(), &ends);
+            }
+            let points = own.points.iter();
+            held.extend(points.filter_map(|own| Some((own.body?, own.point))));
+        }
         if let LoadKind::Spring {
             body_a,
             body_b,

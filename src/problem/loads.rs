@@ -1,6 +1,7 @@
 //! Makes the loads of a model from those of a file.
 
 use super::controllers::controller;
+use super::courses::course as motion;
 use super::elements::prepared;
 pub use super::load_ends::named;
 use super::load_ends::{course, dof, ends, joint};
@@ -9,14 +10,16 @@ use super::spread_loads::dead_shares;
 use crate::math::scalar::unit;
 use crate::math::{Scalar, Vec3};
 use crate::model::{
-    Axes, Contact, DegreeOfFreedom, DistributedLoad, Load, LoadKind, NormalLaw, Spread, Surface,
+    Axes, Cable, CablePoint, Contact, DegreeOfFreedom, DistributedLoad, ForceTable, Load, LoadKind,
+    NormalLaw, Spread, Surface, TimeFunction,
 };
 use crate::prepared::Prepared;
-use crate::quantity::Vector;
+use crate::quantity::{Quantity, Vector};
 use crate::schema::Document;
 use crate::schema::loads::{
-    Axes as WrittenAxes, BushingEntries, Contact as WrittenContact, Load as WrittenLoad, Stop,
-    Surface as WrittenSurface, TimeFunction as Written,
+    Axes as WrittenAxes, BushingEntries, Cable as WrittenCable, CableLength,
+    CablePoint as WrittenPoint, Contact as WrittenContact, ForceTable as WrittenTable,
+    Interpolation, Load as WrittenLoad, Stop, Surface as WrittenSurface, TimeFunction as Written,
 };
 use std::sync::Arc;
 
@@ -34,7 +37,9 @@ fn kind<S: Scalar>(
     assembly: &Assembly<S>,
     written: &WrittenLoad,
 ) -> LoadKind<S> {
-    let get = |quantity: &crate::quantity::Quantity| assembly.quantity(quantity);
+    let get = |quantity: &Quantity| assembly.quantity(quantity);
+    let optional = |own: &Option<Quantity>| own.as_ref().map_or(S::zero(), get);
+    let table = |own: &Option<WrittenTable>| own.as_ref().map(|own| force_table(assembly, own));
     let body = |name: &str| {
         assembly
             .index(name)
@@ -88,27 +93,30 @@ fn kind<S: Scalar>(
                 point_a: ends.point_a,
                 point_b: ends.point_b,
                 rest_length: get(&spring.rest_length),
-                stiffness: get(&spring.stiffness),
+                stiffness: optional(&spring.stiffness),
                 cubic: get(&spring.cubic),
                 damping: get(&spring.damping),
+                tables: [&spring.table, &spring.damping_table].map(table),
             }
         }
         WrittenLoad::TorsionSpring(spring) => LoadKind::TorsionSpring {
             joint: joint(document, &spring.joint).0,
             counter: None,
             rest_angle: get(&spring.rest_angle),
-            stiffness: get(&spring.stiffness),
+            stiffness: optional(&spring.stiffness),
             cubic: get(&spring.cubic),
             damping: get(&spring.damping),
+            tables: [&spring.table, &spring.damping_table].map(table),
         },
         WrittenLoad::Damping(damping) => {
             let (joint, written) = joint(document, &damping.joint);
-            let coefficient = get(&damping.coefficient);
+            let coefficient = optional(&damping.coefficient);
             match dof(written, damping.motion) {
                 Some(dof) => LoadKind::Damping {
                     joint,
                     dof,
                     coefficient,
+                    table: table(&damping.table),
                 },
                 None => LoadKind::BallDamping { joint, coefficient },
             }
@@ -153,6 +161,7 @@ fn kind<S: Scalar>(
         },
         WrittenLoad::Stop(stop) => stop_of(document, assembly, stop),
         WrittenLoad::Contact(contact) => LoadKind::Contact(contact_of(assembly, contact)),
+        WrittenLoad::Cable(own) => LoadKind::Cable(cable_of(document, assembly, own)),
         WrittenLoad::Pressure(load) => {
             let own = elements(document, &load.body);
             let shells = own.sets.face_sets[&load.faces].as_slice().into();
@@ -175,10 +184,17 @@ fn kind<S: Scalar>(
     }
 }
 
+fn force_table<S: Scalar>(assembly: &Assembly<S>, table: &WrittenTable) -> ForceTable<S> {
+    let forces = table.forces.iter();
+    ForceTable {
+        interpolation: Interpolation::of(table.interpolation),
+        places: table.places.iter().map(|&x| x.into()).collect(),
+        forces: forces.map(|force| assembly.quantity(force)).collect(),
+    }
+}
+
 fn stop_of<S: Scalar>(document: &Document, assembly: &Assembly<S>, stop: &Stop) -> LoadKind<S> {
-    let limit = |limit: &Option<crate::quantity::Quantity>| {
-        limit.as_ref().map(|limit| assembly.quantity(limit))
-    };
+    let limit = |limit: &Option<Quantity>| limit.as_ref().map(|limit| assembly.quantity(limit));
     let limits = [limit(&stop.lower), limit(&stop.upper)];
     let law = NormalLaw {
         exponent: stop.exponent,
@@ -211,7 +227,7 @@ fn stop_of<S: Scalar>(document: &Document, assembly: &Assembly<S>, stop: &Stop) 
 }
 
 fn contact_of<S: Scalar>(assembly: &Assembly<S>, contact: &WrittenContact) -> Contact<S> {
-    let get = |quantity: &crate::quantity::Quantity| assembly.quantity(quantity);
+    let get = |quantity: &Quantity| assembly.quantity(quantity);
     let ends = ends(assembly, &contact.between, &contact.at);
     let turn = assembly.pose(&contact.between[1]).rotation;
     let in_body = |direction: &Vector| turn.tr_mul(&assembly.ground(direction));
@@ -243,6 +259,37 @@ fn contact_of<S: Scalar>(assembly: &Assembly<S>, contact: &WrittenContact) -> Co
         friction: friction.map_or(S::zero(), |own| get(&own.coefficient)),
         // Without friction any width will do.
         slip: friction.map_or(S::one(), |own| get(&own.width)),
+    }
+}
+
+fn cable_of<S: Scalar>(
+    document: &Document,
+    assembly: &Assembly<S>,
+    cable: &WrittenCable,
+) -> Cable<S> {
+    let point = |own: &WrittenPoint| CablePoint {
+        body: assembly.index(&own.body),
+        point: own.point.as_ref().map_or(Vec3::zeros(), |point| {
+            assembly.in_body(&own.body, point) - assembly.pose(&own.body).centre
+        }),
+    };
+    let length = match &cable.length {
+        CableLength::Constant(value) => TimeFunction::constant(assembly.quantity(value)),
+        CableLength::Varying(own) => motion(assembly, own.parts()),
+    };
+    Cable {
+        points: cable.points.iter().map(point).collect(),
+        // A machine at rest holds a winch as it is at the start.
+        length: match document.is_rest() {
+            true => TimeFunction::constant(length.value(S::zero())),
+            false => length,
+        },
+        law: NormalLaw {
+            exponent: 1.0,
+            stiffness: assembly.quantity(&cable.stiffness),
+            dissipation: assembly.quantity(&cable.dissipation),
+            width: assembly.quantity(&cable.width),
+        },
     }
 }
 

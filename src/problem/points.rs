@@ -368,6 +368,12 @@ pub(super) fn beside(problem: &Problem) -> Option<Finding> {
                         )
                     })
                 }),
+                Load::Cable(own) => own.points.iter().enumerate().find_map(|(k, own)| {
+                    let point = own.point.as_ref().filter(|_| is_point(&own.body))?;
+                    let place = assembly.in_body(&own.body, point);
+                    let pointer = join(&join(&join(&pointer, "points"), k), "point");
+                    away(pointer, &own.body, place - assembly.pose(&own.body).centre)
+                }),
                 Load::Stop(stop) => ends(&pointer, stop.between.as_ref()?, stop.at.as_ref()?),
                 Load::Damping(damping) => {
                     let joint = written.joints.get(&damping.joint)?;

@@ -34,11 +34,11 @@ pub(super) fn name_units_of_joints(variables: &mut [Variable], scene: &Scene<f64
                         Coordinate::Distance { .. } => true,
                     })
                 }
-                LoadKind::DistanceStop { .. } => Some(true),
+                LoadKind::Spring { .. } | LoadKind::DistanceStop { .. } => Some(true),
                 LoadKind::Damping { dof, .. }
                 | LoadKind::Friction { dof, .. }
                 | LoadKind::JointStop { dof, .. } => Some(dof == DegreeOfFreedom::Translation),
-                LoadKind::BallDamping { .. } => Some(false),
+                LoadKind::TorsionSpring { .. } | LoadKind::BallDamping { .. } => Some(false),
                 _ => None,
             }
         });

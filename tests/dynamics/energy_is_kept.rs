@@ -48,6 +48,7 @@ fn scene(seed: u64, unit: f64) -> (Model<f64>, f64) {
                 stiffness,
                 cubic: 0.3 * stiffness,
                 damping: 0.0,
+                tables: [None, None],
             },
             _ => LoadKind::Spring {
                 body_a: k,
@@ -58,6 +59,7 @@ fn scene(seed: u64, unit: f64) -> (Model<f64>, f64) {
                 stiffness,
                 cubic: 0.3 * stiffness,
                 damping: 0.0,
+                tables: [None, None],
             },
         };
         let name = format!("spring {k}");
@@ -382,6 +384,7 @@ fn energy_is_looked_at_only_where_it_is_conserved_and_steps_follow_a_tolerance()
             stiffness: 2.0,
             cubic: 0.0,
             damping,
+            tables: [None, None],
         };
         for (kind, conserves) in [
             (spring(0.0), true),
@@ -391,6 +394,7 @@ fn energy_is_looked_at_only_where_it_is_conserved_and_steps_follow_a_tolerance()
                     joint,
                     dof,
                     coefficient: 0.1,
+                    table: None,
                 },
                 false,
             ),

@@ -14,8 +14,8 @@ use flexbody_mechanics::integrate::implicit::ggl::{Equations, StepState};
 use flexbody_mechanics::model::Interpolation;
 use flexbody_mechanics::model::controller::{Controller, Coordinate, Feedback, Limits, Weight};
 use flexbody_mechanics::model::{
-    Axes, Contact, DegreeOfFreedom, JointKind, Load, LoadKind, Model, NormalLaw, Smoothness,
-    Surface, TimeFunction,
+    Axes, Cable, CablePoint, Contact, DegreeOfFreedom, ForceTable, JointKind, Load, LoadKind,
+    Model, NormalLaw, Smoothness, Surface, TimeFunction,
 };
 use flexbody_mechanics::system::InMotion;
 use flexbody_mechanics::system::initial;
@@ -80,6 +80,7 @@ fn kinds(body_b: Option<usize>, numbers: &mut Numbers) -> Vec<(JointKind, LoadKi
             stiffness: 3.0,
             cubic: 1.7,
             damping,
+            tables: [None, None],
         };
         // A rest angle on the far side, so that the difference is wrapped.
         let torsion = LoadKind::TorsionSpring {
@@ -89,8 +90,57 @@ fn kinds(body_b: Option<usize>, numbers: &mut Numbers) -> Vec<(JointKind, LoadKi
             stiffness: 1.3,
             cubic: 0.7,
             damping,
+            tables: [None, None],
         };
         all.extend([(Spherical, spring), (Revolute, torsion)]);
+    }
+    let table = |places: [f64; 4], interpolation: Interpolation| ForceTable {
+        interpolation,
+        places: places.to_vec(),
+        forces: vec![-8.0, 0.0, 0.7, 5.0],
+    };
+    for interpolation in [
+        Interpolation::Linear,
+        Interpolation::Monotone,
+        Interpolation::Spline,
+    ] {
+        // Within the table and beyond it.
+        for wide in [0.4, 40.0] {
+            let elastic = table([-1.0, 0.1, 0.3, 1.2].map(|x| x * wide), interpolation);
+            let viscous = table([-2.0, 0.0, 0.4, 2.5].map(|x| x * wide), interpolation);
+            let tables = [Some(elastic), Some(viscous.clone())];
+            let spring = LoadKind::Spring {
+                body_a: 1,
+                body_b,
+                point_a: numbers.vector(),
+                point_b: numbers.vector(),
+                rest_length: 0.8,
+                stiffness: 0.0,
+                cubic: 0.0,
+                damping: 0.0,
+                tables: tables.clone(),
+            };
+            let torsion = LoadKind::TorsionSpring {
+                joint: 0,
+                counter: None,
+                rest_angle: 2.5,
+                stiffness: 0.4,
+                cubic: 0.0,
+                damping: 0.2,
+                tables,
+            };
+            let damping = LoadKind::Damping {
+                joint: 0,
+                dof: DegreeOfFreedom::Translation,
+                coefficient: 0.3,
+                table: Some(viscous),
+            };
+            all.extend([
+                (Spherical, spring),
+                (Revolute, torsion),
+                (Prismatic, damping),
+            ]);
+        }
     }
     for (kind, dof) in [
         (Revolute, DegreeOfFreedom::Rotation),
@@ -100,6 +150,7 @@ fn kinds(body_b: Option<usize>, numbers: &mut Numbers) -> Vec<(JointKind, LoadKi
             joint: 0,
             dof,
             coefficient: 0.6,
+            table: None,
         };
         let friction = LoadKind::Friction {
             joint: 0,
@@ -125,6 +176,7 @@ fn kinds(body_b: Option<usize>, numbers: &mut Numbers) -> Vec<(JointKind, LoadKi
         all.push((Spherical, drag));
     }
     all.extend(stops(body_b, numbers));
+    all.extend(cables(body_b, numbers));
     all.extend(contacts(body_b, numbers));
     all.extend(controllers(body_b, numbers));
     all
@@ -241,6 +293,37 @@ fn contacts(body_b: Option<usize>, numbers: &mut Numbers) -> Vec<(JointKind, Loa
             };
             all.push((JointKind::Spherical, LoadKind::Contact(contact)));
         }
+    }
+    all
+}
+
+/// Cables over pulleys on both bodies and ground: taut, within their onset and slack; of constant and changing length.
+fn cables(body_b: Option<usize>, numbers: &mut Numbers) -> Vec<(JointKind, LoadKind<f64>)> {
+    let mut all = Vec::new();
+    for (length, width, dissipation) in [
+        (TimeFunction::constant(1.0), 0.3, 0.02),
+        (TimeFunction::constant(4.0), 300.0, 0.0),
+        (harmonic(), 0.3, 0.02),
+        (TimeFunction::constant(1e3), 0.3, 0.02),
+    ] {
+        // One without ground, whose forces balance.
+        let over = if dissipation > 0.0 { Some(0) } else { None };
+        let bodies = [body_b, Some(1), over, Some(1), Some(0)];
+        let point = |body| CablePoint {
+            body,
+            point: numbers.vector() * 2.0,
+        };
+        let cable = Cable {
+            points: bodies.map(point).to_vec(),
+            length,
+            law: NormalLaw {
+                exponent: 1.0,
+                stiffness: 0.4,
+                dissipation,
+                width,
+            },
+        };
+        all.push((JointKind::Spherical, LoadKind::Cable(cable)));
     }
     all
 }
@@ -412,12 +495,21 @@ fn potentials() {
         let mut cot = case.model.map(&mut |_| 0.0);
         let motions = case.motions(&case.q, &case.v);
         let (model, numbering) = (&case.model, &case.numbering);
-        loads::pull_potential(model, numbering, &motions, 0.7, &mut y, &mut cot);
+        let mut by_time = 0.0;
+        let mut out = LoadCotangent {
+            y: Some(&mut y),
+            v: None,
+            time: &mut by_time,
+            model: &mut cot,
+        };
+        let here = InMotion::new(model, numbering, &motions, TIME);
+        loads::pull_potential(&here, 0.7, &mut out);
         let v = lift(&case.v);
-        let energy = |model: &Model<Complex64>, q: &[Complex64]| {
-            let energy = loads::potential(model, &case.motions(q, &v));
+        let energy_at = |model: &Model<Complex64>, q: &[Complex64], time: Complex64| {
+            let energy = loads::potential(model, &case.motions(q, &v), time);
             0.7 * energy.im / COMPLEX_STEP
         };
+        let energy = |model: &Model<Complex64>, q: &[Complex64]| energy_at(model, q, TIME.into());
         let lifted = case.lifted();
         let exact: Vec<f64> = (0..12)
             .map(|j| energy(&lifted, &case.moved(&unit(12, j))))
@@ -426,6 +518,8 @@ fn potentials() {
         let q = lift(&case.q);
         let exact = case.by_parameters(|model| energy(model, &q));
         agree(&case, "energy by parameters", &parameters(&cot), &exact);
+        let later = energy_at(&lifted, &q, Complex64::new(TIME, COMPLEX_STEP));
+        agree(&case, "energy by time", &[by_time], &[later]);
         if matches!(
             case.model.loads[0].kind,
             LoadKind::Spring { .. }
@@ -435,8 +529,9 @@ fn potentials() {
                 }
                 | LoadKind::DistanceStop { .. }
                 | LoadKind::Contact(_)
-        ) {
-            // At rest, the force of a spring, a stop or a contact is minus the derivative of its energy.
+        ) || matches!(&case.model.loads[0].kind, LoadKind::Cable(own) if own.is_fixed())
+        {
+            // At rest, the force of a spring, a stop, a contact or a cable is minus the derivative of its energy.
             let still = forces(&case, &case.model, &case.q, &[0.0; 12], TIME);
             let down: Vec<f64> = y.iter().map(|y| -y / 0.7).collect();
             agree(&case, "force from energy", &still, &down);
@@ -557,7 +652,8 @@ fn forces_between_two_bodies_balance() {
         if matches!(
             case.model.loads[0].kind,
             LoadKind::Force { .. } | LoadKind::Torque { .. } | LoadKind::Drag { .. }
-        ) || case.model.joints[0].body_b.is_none()
+        ) || matches!(&case.model.loads[0].kind, LoadKind::Cable(own) if own.points.iter().any(|own| own.body.is_none()))
+            || case.model.joints[0].body_b.is_none()
         {
             continue;
         }

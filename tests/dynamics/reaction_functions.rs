@@ -126,6 +126,7 @@ fn pair(kind: JointKind, seed: u64, driven: bool) -> Model<f64> {
                 stiffness: 3.0,
                 cubic: 0.8,
                 damping: 0.2,
+                tables: [None, None],
             },
         });
     }
@@ -140,6 +141,7 @@ fn pair(kind: JointKind, seed: u64, driven: bool) -> Model<f64> {
             stiffness: 20.0,
             cubic: 3.0,
             damping: 0.4,
+            tables: [None, None],
         },
     });
     model

@@ -197,11 +197,13 @@ fn loaded() -> Model<f64> {
             stiffness: 5.0,
             cubic: 0.7,
             damping: 0.3,
+            tables: [None, None],
         },
         LoadKind::Damping {
             joint: 0,
             dof: DegreeOfFreedom::Rotation,
             coefficient: 0.2,
+            table: None,
         },
         LoadKind::BallDamping {
             joint: 1,

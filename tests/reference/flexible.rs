@@ -206,6 +206,7 @@ pub fn add_loads(model: &mut Model<f64>, side: usize, tip: usize) {
             stiffness: 20.0,
             cubic: 3.0,
             damping: 0.4,
+            tables: [None, None],
         },
     });
     model.loads.push(Load {
@@ -301,6 +302,7 @@ pub fn planar_swing(seed: u64, modes: usize) -> Model<f64> {
             stiffness: 20.0,
             cubic: 3.0,
             damping: 0.4,
+            tables: [None, None],
         },
     });
     model

@@ -4,6 +4,7 @@ use super::instant::EnergyPart;
 use super::snapshot::{Snapshot, SnapshotCotangent};
 use crate::math::{Scalar, Vec3};
 use crate::system::bodies::add6;
+use crate::system::loads::LoadCotangent;
 use crate::system::{flexible, loads};
 
 /// Linear momentum of the model in a snapshot, ground axes \[kg m/s\].
@@ -41,7 +42,7 @@ pub fn energy<S: Scalar>(at: &Snapshot<S>, part: EnergyPart) -> S {
         sum += held.kinetic;
     }
     if part != EnergyPart::Kinetic {
-        sum += held.potential + loads::potential(at.model, &motions);
+        sum += held.potential + loads::potential(at.model, &motions, at.time);
     }
     sum
 }
@@ -96,8 +97,13 @@ pub(super) fn pull_energy(
         }
     }
     if part != EnergyPart::Kinetic {
-        let (model, numbering) = (at.model, at.numbering);
-        loads::pull_potential(model, numbering, &motions, weight, out.y, out.model);
+        let mut to = LoadCotangent {
+            y: Some(&mut *out.y),
+            v: None,
+            time: &mut *out.time,
+            model: &mut *out.model,
+        };
+        loads::pull_potential(&at.in_motion(&motions), weight, &mut to);
     }
     let parts = match part {
         EnergyPart::Kinetic => [weight, 0.0],

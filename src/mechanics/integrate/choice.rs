@@ -7,7 +7,7 @@ use super::work::Measured;
 use super::{Integrated, IntegrationFailure};
 use crate::math::{Scalar, Vec3};
 use crate::model::load::LoadKind;
-use crate::model::{FlexibleBody, Load, Model, RigidBody};
+use crate::model::{FlexibleBody, ForceTable, Load, Model, RigidBody};
 use crate::system::flexible;
 
 /// The method for scenes that are not stiff.
@@ -206,6 +206,10 @@ fn mobility(body: &RigidBody<f64>, point: &Vec3<f64>) -> f64 {
 /// Angular frequency (upper bound) \[rad/s\] and damping ratio of the vibration of bodies on a
 /// spring.
 fn vibration(model: &Model<f64>, load: &LoadKind<f64>) -> Option<(f64, f64)> {
+    // The steepest line of a table, and so an upper bound.
+    let elastic = |stiffness: f64, tables: &[Option<ForceTable<f64>>; 2]| {
+        stiffness + tables[0].as_ref().map_or(0.0, ForceTable::steepest)
+    };
     let (stiffness, damping, inverse) = match *load {
         LoadKind::Spring {
             body_a,
@@ -214,6 +218,7 @@ fn vibration(model: &Model<f64>, load: &LoadKind<f64>) -> Option<(f64, f64)> {
             point_b,
             stiffness,
             damping,
+            ref tables,
             ..
         } => {
             let ends = [(Some(body_a), point_a), (body_b, point_b)];
@@ -221,12 +226,13 @@ fn vibration(model: &Model<f64>, load: &LoadKind<f64>) -> Option<(f64, f64)> {
                 Some(body) => mobility(&model.bodies[body], &point),
                 None => 0.0,
             });
-            (stiffness, damping, inverse.sum())
+            (elastic(stiffness, tables), damping, inverse.sum())
         }
         LoadKind::TorsionSpring {
             joint,
             stiffness,
             damping,
+            ref tables,
             ..
         } => {
             let joint = &model.joints[joint];
@@ -235,7 +241,7 @@ fn vibration(model: &Model<f64>, load: &LoadKind<f64>) -> Option<(f64, f64)> {
             };
             let a = about(joint.body_a, &joint.frame_a.axes[2]);
             let b = joint.body_b.map(|body| about(body, &joint.frame_b.axes[2]));
-            (stiffness, damping, a + b.unwrap_or(0.0))
+            (elastic(stiffness, tables), damping, a + b.unwrap_or(0.0))
         }
         LoadKind::Force { .. }
         | LoadKind::Distributed(_)
@@ -249,6 +255,7 @@ fn vibration(model: &Model<f64>, load: &LoadKind<f64>) -> Option<(f64, f64)> {
         // They vibrate only while they touch, where the error of the steps sees it.
         | LoadKind::JointStop { .. }
         | LoadKind::DistanceStop { .. }
+        | LoadKind::Cable(_)
         | LoadKind::Contact(_) => return None,
     };
     let omega = (stiffness * inverse).sqrt();

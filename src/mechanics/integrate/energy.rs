@@ -22,7 +22,7 @@ use super::scale::Scale;
 use super::settings::{Settings, Spacing};
 use crate::math::Scalar;
 use crate::model::load::LoadKind;
-use crate::model::{DegreeOfFreedom, Model, NormalLaw, RigidBody};
+use crate::model::{DegreeOfFreedom, ForceTable, Model, NormalLaw, RigidBody};
 use crate::system::{BodyMotion, flexible, loads};
 
 /// Smallest change of energy that can reject a run, relative to X + K.
@@ -66,9 +66,10 @@ struct Stock {
 }
 
 impl Stock {
+    /// At the start of a run.
     fn of<S: Scalar>(model: &Model<S>, motions: &[BodyMotion<S>]) -> Self {
         let mut own = Self {
-            springs: loads::potential(model, motions).re(),
+            springs: loads::potential(model, motions, S::zero()).re(),
             ..Self::default()
         };
         let states = model.states();
@@ -170,7 +171,7 @@ impl Supply {
             fell += (weight - then).abs();
             size += weight.abs();
         }
-        let springs = loads::potential(model, motions).re();
+        let springs = loads::potential(model, motions, time.into()).re();
         let mut strained = 0.0;
         if !model.flexible.is_empty() {
             let held = flexible::held(model, motions);
@@ -250,16 +251,26 @@ impl Ledger {
         let stored = |law: &NormalLaw<S>, depth: f64| {
             law.stiffness.re() * depth.powf(law.exponent + 1.0) / (law.exponent + 1.0)
         };
+        let steepest = |tables: &[Option<ForceTable<S>>; 2]| {
+            tables[0].as_ref().map_or(0.0, ForceTable::steepest)
+        };
         let springs = model.loads.iter().map(|load| match &load.kind {
             LoadKind::Spring {
-                stiffness, cubic, ..
+                stiffness,
+                cubic,
+                tables,
+                ..
             } => {
                 let square = scale.length * scale.length;
-                0.5 * square * (stiffness.re().abs() + 0.5 * cubic.re().abs() * square)
+                let k = stiffness.re().abs() + steepest(tables);
+                0.5 * square * (k + 0.5 * cubic.re().abs() * square)
             }
             LoadKind::TorsionSpring {
-                stiffness, cubic, ..
-            } => 0.5 * (stiffness.re().abs() + 0.5 * cubic.re().abs()),
+                stiffness,
+                cubic,
+                tables,
+                ..
+            } => 0.5 * (stiffness.re().abs() + steepest(tables) + 0.5 * cubic.re().abs()),
             LoadKind::Bushing { stiffness, .. } => {
                 let size = |i: usize| if i < 3 { scale.length } else { 1.0 };
                 let entries = stiffness.iter().enumerate();
@@ -272,6 +283,7 @@ impl Ledger {
             },
             LoadKind::DistanceStop { law, .. } => stored(law, scale.length),
             LoadKind::Contact(own) => stored(&own.law, scale.length),
+            LoadKind::Cable(own) => stored(&own.law, scale.length),
             LoadKind::Force { .. }
             | LoadKind::Distributed(_)
             | LoadKind::Controller(_)
@@ -308,7 +320,7 @@ impl Ledger {
             energy += kinetic(body, motion);
             potential.push(weight(model, body, motion));
         }
-        potential.push(loads::potential(model, motions).re());
+        potential.push(loads::potential(model, motions, time.into()).re());
         if !model.flexible.is_empty() {
             let held = flexible::held(model, motions);
             energy += held.kinetic.re();

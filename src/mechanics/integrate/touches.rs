@@ -26,10 +26,11 @@ pub struct Missed {
     pub part: f64,
 }
 
-/// A state as the quintic needs it: q, q̇ and q̈ by body, and its gaps.
+/// A state as the quintic needs it: q, q̇ and q̈ by body, its time and its gaps.
 #[derive(Clone, Debug, Default)]
 struct End {
     bodies: Vec<[[f64; 7]; 3]>,
+    time: f64,
     gaps: Vec<Gap>,
 }
 
@@ -50,7 +51,7 @@ impl Touches {
             return None;
         }
         let mut before = End::default();
-        before.set(model, numbering, start);
+        before.set(model, numbering, start, 0.0);
         Some(Self {
             before,
             after: End::default(),
@@ -65,12 +66,13 @@ impl Touches {
         end: [&[S]; 3],
         h: f64,
     ) -> Option<Missed> {
-        self.after.set(model, numbering, end);
+        self.after.set(model, numbering, end, self.before.time + h);
         let mut motions: Vec<BodyMotion<S>> = Vec::new();
         let bodies = 0..numbering.bodies();
         motions.extend(bodies.map(|body| self.inside(body, h, 0.5)));
         let mut middle = Vec::new();
-        gaps(model, &motions, 0..model.loads.len(), &mut middle);
+        let time = self.before.time + 0.5 * h;
+        gaps(model, (&motions, time), 0..model.loads.len(), &mut middle);
         let all = self.before.gaps.iter().zip(&middle).zip(&self.after.gaps);
         let all = all
             .enumerate()
@@ -130,10 +132,11 @@ impl Touches {
         let bodies = model.loads[load].kind.bodies(&model.joints);
         let mut found = Vec::new();
         let mut depth = |part: f64| {
-            for body in bodies.into_iter().flatten() {
+            for &body in &bodies {
                 motions[body] = self.inside(body, h, part);
             }
-            gaps(model, motions, load..load + 1, &mut found);
+            let time = self.before.time + part * h;
+            gaps(model, (motions, time), load..load + 1, &mut found);
             found[k - first].penetration
         };
         let at = |k: usize| k as f64 / INTERVALS as f64;
@@ -155,7 +158,14 @@ impl Touches {
 }
 
 impl End {
-    fn set<S: Scalar>(&mut self, model: &Model<S>, numbering: &Numbering, [q, v, a]: [&[S]; 3]) {
+    fn set<S: Scalar>(
+        &mut self,
+        model: &Model<S>,
+        numbering: &Numbering,
+        [q, v, a]: [&[S]; 3],
+        time: f64,
+    ) {
+        self.time = time;
         self.bodies.clear();
         self.bodies.extend((0..numbering.bodies()).map(|body| {
             let (o, u) = (numbering.position(body), numbering.velocity(body));
@@ -171,7 +181,12 @@ impl End {
         }));
         let mut motions = Vec::new();
         BodyMotion::all(numbering, q, v, &mut motions);
-        gaps(model, &motions, 0..model.loads.len(), &mut self.gaps);
+        gaps(
+            model,
+            (&motions, time),
+            0..model.loads.len(),
+            &mut self.gaps,
+        );
     }
 }
 

@@ -326,7 +326,7 @@ impl Plane {
                     }
                 }
                 // Flexible bodies that carry it, and stiffnesses, have no plane but by chance, which is not looked for.
-                LoadKind::Distributed(_) | LoadKind::Bushing { .. } => {
+                LoadKind::Distributed(_) | LoadKind::Bushing { .. } | LoadKind::Cable(_) => {
                     examiner.zero(S::one(), 1.0, what)
                 }
                 LoadKind::Controller(own) => {

@@ -266,8 +266,8 @@ fn move_load<S: Scalar>(kind: &mut LoadKind<S>, on_host: &[Option<Pose<S>>]) {
         | LoadKind::Bushing { .. }
         | LoadKind::Friction { .. }
         | LoadKind::JointStop { .. } => {}
-        // It acts on a flexible body, and these are not merged; nor are bodies with controllers.
-        LoadKind::Distributed(_) | LoadKind::Controller(_) => {}
+        // It acts on a flexible body, and these are not merged; nor are bodies with controllers or cables.
+        LoadKind::Distributed(_) | LoadKind::Controller(_) | LoadKind::Cable(_) => {}
     }
 }
 

@@ -89,7 +89,7 @@ impl Lowering {
             return Self::none();
         }
         let model = &designs.start.model;
-        if !model.flexible.is_empty() || model.is_coupled() || model.is_controlled() {
+        if model.is_entangled() {
             return Self::of_flexible(&designs);
         }
         let (welded, mut kept) = Welded::find(&designs);

@@ -160,6 +160,7 @@ fn vectors(model: &Model<f64>) -> (Vec<Vec3<f64>>, Vec<Vec3<f64>>) {
             | LoadKind::Friction { .. }
             | LoadKind::JointStop { .. }
             | LoadKind::Controller(_)
+            | LoadKind::Cable(_)
             | LoadKind::Distributed(_) => {}
         }
     }

@@ -343,6 +343,7 @@ pub(super) fn points<S: Scalar>(kind: &LoadKind<S>) -> [Option<(Option<usize>, V
         | LoadKind::Friction { .. }
         | LoadKind::JointStop { .. }
         | LoadKind::Controller(_)
+        | LoadKind::Cable(_)
         | LoadKind::Distributed(_) => [None, None],
     }
 }

@@ -109,6 +109,11 @@ pub(super) fn holds<S: Scalar>(
                     vanishes(None, &turns);
                 }
             }
+            LoadKind::Cable(own) => {
+                for own in own.points.iter().filter(|own| own.body.is_some_and(is)) {
+                    vanishes(Some(&own.point), &turns);
+                }
+            }
             LoadKind::TorsionSpring { joint, .. }
             | LoadKind::Damping { joint, .. }
             | LoadKind::BallDamping { joint, .. }

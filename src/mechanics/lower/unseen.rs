@@ -10,7 +10,7 @@ use crate::functions::function::Part;
 use crate::functions::{Function, Instant, Scene};
 use crate::integrate::Trajectory;
 use crate::math::Scalar;
-use crate::model::{LoadKind, Model};
+use crate::model::{Joint, LoadKind, Model};
 use crate::system::{Numbering, placement};
 
 /// The parts of a scene that are kept: ascending indices.
@@ -31,13 +31,10 @@ impl Seen {
             .loads
             .iter()
             .map(|load| load.kind.bodies(&model.joints));
-        let joints = model
-            .joints
-            .iter()
-            .map(|own| [Some(own.body_a), own.body_b]);
-        for pair in joints.chain(loads) {
-            if let [Some(a), Some(b)] = pair {
-                parts.join(a, b);
+        let joints = model.joints.iter().map(|own| of_joint(own));
+        for all in joints.chain(loads) {
+            for pair in all.windows(2) {
+                parts.join(pair[0], pair[1]);
             }
         }
         for load in &model.loads {
@@ -66,20 +63,16 @@ impl Seen {
             let mut function = function.clone();
             function.for_each_place(&mut |body, _| seen[*body] = true);
             let observed = function.parts().into_iter().flat_map(|part| match part {
-                Part::Joint(&mut joint) => {
-                    let joint = &model.joints[joint];
-                    [Some(joint.body_a), joint.body_b]
-                }
+                Part::Joint(&mut joint) => of_joint(&model.joints[joint]),
                 Part::Load(&mut load) => model.loads[load].kind.bodies(&model.joints),
             });
-            for body in observed.flatten() {
+            for body in observed {
                 seen[body] = true;
             }
         }
-        // The duration depends on no body, but a scene needs one. No joint joins carriers, and couplings and controllers join
-        // several joints.
-        let joins = !model.flexible.is_empty() || model.is_coupled() || model.is_controlled();
-        if !seen.contains(&true) || joins {
+        // The duration depends on no body, but a scene needs one. No joint joins carriers; couplings, controllers and cables
+        // join several.
+        if !seen.contains(&true) || model.is_entangled() {
             seen.fill(true);
         }
         let all = 0..model.bodies.len();
@@ -168,17 +161,20 @@ impl Seen {
     }
 }
 
+/// The bodies of a joint.
+fn of_joint<S>(joint: &Joint<S>) -> Vec<usize> {
+    std::iter::once(joint.body_a).chain(joint.body_b).collect()
+}
+
 /// Removes the bodies without a new number, and their joints and loads. Returns the new numbers of joints
 /// and of loads.
 fn leave_out<S: Scalar>(model: &mut Model<S>, number: &[Option<usize>]) -> [Vec<Option<usize>>; 2] {
-    let kept = |ends: [Option<usize>; 2]| ends.into_iter().flatten().all(|b| number[b].is_some());
+    let kept = |ends: Vec<usize>| ends.into_iter().all(|b| number[b].is_some());
     let loads: Vec<bool> = (model.loads.iter())
         .map(|load| kept(load.kind.bodies(&model.joints)))
         .collect();
     let joints = model.joints.iter();
-    let joints: Vec<bool> = joints
-        .map(|joint| kept([Some(joint.body_a), joint.body_b]))
-        .collect();
+    let joints: Vec<bool> = joints.map(|joint| kept(of_joint(joint))).collect();
     let joint_number = renumbered(&joints);
     let new = |body: &mut usize| {
         *body = number[*body].expect("what is on a body that is left out is left out");
@@ -194,7 +190,9 @@ fn leave_out<S: Scalar>(model: &mut Model<S>, number: &[Option<usize>]) -> [Vec<
             | LoadKind::Torque { body, .. }
             | LoadKind::Drag { body, .. } => new(body),
             LoadKind::Distributed(load) => new(&mut load.body),
-            LoadKind::Controller(_) => unreachable!("a scene with controllers is kept whole"),
+            LoadKind::Controller(_) | LoadKind::Cable(_) => {
+                unreachable!("a scene with controllers or cables is kept whole")
+            }
             LoadKind::Spring { body_a, body_b, .. }
             | LoadKind::DistanceStop { body_a, body_b, .. } => {
                 new(body_a);

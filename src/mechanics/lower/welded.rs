@@ -140,7 +140,9 @@ impl Welded {
                     LoadKind::Spring { body_a, body_b, .. }
                     | LoadKind::DistanceStop { body_a, body_b, .. } => [Some(*body_a), *body_b],
                     LoadKind::Contact(own) => [Some(own.body_a), own.body_b],
-                    LoadKind::Force { .. }
+                    // A scene with cables is not welded.
+                    LoadKind::Cable(_)
+                    | LoadKind::Force { .. }
                     | LoadKind::Torque { .. }
                     | LoadKind::TorsionSpring { .. }
                     | LoadKind::Damping { .. }

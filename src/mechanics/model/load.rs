@@ -7,9 +7,9 @@
 //! ```text
 //! force              F = m(t) n              at a point; n in ground or in body axes
 //! torque             M = m(t) n              n in ground or in body axes
-//! spring             F = −(k x + k3 x³ + c l̇) d / l,    x = l − l0
-//! torsion spring     M = −(k x + k3 x³ + c φ̇) e,         x = φ − φ0
-//! damping            M = −c φ̇ e   or   F = −c ṡ e
+//! spring             F = −(k x + k3 x³ + T(x) + c l̇ + D(l̇)) d / l,    x = l − l0
+//! torsion spring     M = −(k x + k3 x³ + T(x) + c φ̇ + D(φ̇)) e,         x = φ − φ0
+//! damping            M = −(c φ̇ + D(φ̇)) e   or   F = −(c ṡ + D(ṡ)) e
 //! ball damping       M = −c (ω_A − ω_B)
 //! bushing            (F, M) = −(K x + C ẋ),             x the relative displacement and rotation of two frames
 //! friction           M = −μ tanh(φ̇ / w) e   or   F = −μ tanh(ṡ / w) e
@@ -18,14 +18,16 @@
 //! distance stop      F = (N(l_l − l, −l̇) − N(l − l_u, l̇)) d / l
 //! ```
 //!
-//! and by the opposite on body B, so momentum is conserved. N(δ, δ̇) is the [`NormalLaw`] of a stop at a lower (l) or upper (u) limit. Contacts, and loads that are spread over the elements of a flexible body,
-//! have files of their own ([`super::contact`], [`super::distributed`]), as have controllers ([`super::controller`]). Forces and their derivatives are in `system::loads`.
+//! and by the opposite on body B, so momentum is conserved. T and D are [`ForceTable`]s, zero without them. N(δ, δ̇) is the [`NormalLaw`] of a stop at a lower (l) or upper (u) limit. Contacts, and loads that are spread over the elements of a flexible body,
+//! have files of their own ([`super::contact`], [`super::distributed`]), as have controllers ([`super::controller`]) and cables ([`super::cable`]). Forces and their derivatives are in `system::loads`.
 
 use super::axes::Axes;
+use super::cable::Cable;
 use super::contact::Contact;
 use super::controller::{Controller, Coordinate};
 use super::distributed::DistributedLoad;
 use super::drive::DegreeOfFreedom;
+use super::force_table::ForceTable;
 use super::joint::Joint;
 use super::normal_law::NormalLaw;
 use super::time_function::TimeFunction;
@@ -67,7 +69,7 @@ pub enum LoadKind<S> {
         /// m(t) \[N m\].
         magnitude: TimeFunction<S>,
     },
-    /// A spring with a damper between points of two bodies. The points must stay apart, unless l0 and c are zero: then
+    /// A spring with a damper between points of two bodies. The points must stay apart, unless l0 and c are zero and it has no tables: then
     /// F = −(k + k3 l²) d is smooth where they meet.
     Spring {
         /// Body A.
@@ -86,6 +88,8 @@ pub enum LoadKind<S> {
         cubic: S,
         /// Damping c \[N s/m\].
         damping: S,
+        /// T over the stretch and D over its rate.
+        tables: [Option<ForceTable<S>>; 2],
     },
     /// A spring with a damper about the axis of a joint. Its angle φ has all turns since the start.
     TorsionSpring {
@@ -102,6 +106,8 @@ pub enum LoadKind<S> {
         cubic: S,
         /// Damping c \[N m s/rad\].
         damping: S,
+        /// T over x and D over its rate.
+        tables: [Option<ForceTable<S>>; 2],
     },
     /// Viscous damping along or about the axis of a joint.
     Damping {
@@ -111,6 +117,8 @@ pub enum LoadKind<S> {
         dof: DegreeOfFreedom,
         /// c \[N m s/rad or N s/m\].
         coefficient: S,
+        /// D over the rate.
+        table: Option<ForceTable<S>>,
     },
     /// Viscous damping of all relative rotation of a joint's bodies.
     BallDamping {
@@ -181,6 +189,8 @@ pub enum LoadKind<S> {
     },
     /// A contact of a sphere or point with a surface.
     Contact(Contact<S>),
+    /// A cable over pulleys.
+    Cable(Cable<S>),
     /// A pressure or a dead load on the elements of a flexible body.
     Distributed(DistributedLoad<S>),
     /// A controller of a joint or a distance.
@@ -192,9 +202,9 @@ parameters!(struct Load { name; kind });
 parameters!(enum LoadKind {
     Force { body, axes; point, direction, magnitude },
     Torque { body, axes; direction, magnitude },
-    Spring { body_a, body_b; point_a, point_b, rest_length, stiffness, cubic, damping },
-    TorsionSpring { joint, counter; rest_angle, stiffness, cubic, damping },
-    Damping { joint, dof; coefficient },
+    Spring { body_a, body_b; point_a, point_b, rest_length, stiffness, cubic, damping, tables },
+    TorsionSpring { joint, counter; rest_angle, stiffness, cubic, damping, tables },
+    Damping { joint, dof; coefficient, table },
     BallDamping { joint; coefficient },
     Bushing { joint; stiffness, damping },
     Friction { joint, dof; size, width },
@@ -202,6 +212,7 @@ parameters!(enum LoadKind {
     JointStop { joint, dof, counter; limits, law },
     DistanceStop { body_a, body_b; point_a, point_b, limits, law },
     Contact(; contact),
+    Cable(; cable),
     Distributed(; load),
     Controller(; controller),
 });
@@ -214,6 +225,7 @@ impl<S: Scalar> LoadKind<S> {
                 Some(magnitude)
             }
             LoadKind::Distributed(load) => Some(&load.magnitude),
+            LoadKind::Cable(own) => Some(&own.length),
             LoadKind::Spring { .. }
             | LoadKind::TorsionSpring { .. }
             | LoadKind::Damping { .. }
@@ -249,13 +261,17 @@ impl<S> LoadKind<S> {
             | LoadKind::Drag { .. }
             | LoadKind::DistanceStop { .. }
             | LoadKind::Contact(_)
+            | LoadKind::Cable(_)
             | LoadKind::Distributed(_) => None,
         }
     }
 
     /// The bodies that the load acts on, without states of controllers.
-    pub fn bodies(&self, joints: &[Joint<S>]) -> [Option<usize>; 2] {
-        match self {
+    pub fn bodies(&self, joints: &[Joint<S>]) -> Vec<usize> {
+        let both = match self {
+            LoadKind::Cable(own) => {
+                return own.points.iter().filter_map(|own| own.body).collect();
+            }
             LoadKind::Force { body, .. }
             | LoadKind::Torque { body, .. }
             | LoadKind::Drag { body, .. } => [Some(*body), None],
@@ -279,7 +295,8 @@ impl<S> LoadKind<S> {
                 let joint = &joints[*joint];
                 [Some(joint.body_a), joint.body_b]
             }
-        }
+        };
+        both.into_iter().flatten().collect()
     }
 
     /// The body that counts the turns of its joint, if one does. A controller may have several.
@@ -298,6 +315,7 @@ impl<S> LoadKind<S> {
             | LoadKind::Drag { .. }
             | LoadKind::DistanceStop { .. }
             | LoadKind::Contact(_)
+            | LoadKind::Cable(_)
             | LoadKind::Controller(_)
             | LoadKind::Distributed(_) => None,
         }

@@ -5,6 +5,7 @@
 //! each parameter.
 
 pub mod axes;
+pub mod cable;
 pub mod contact;
 mod controlled;
 pub mod controller;
@@ -14,6 +15,7 @@ pub mod drive;
 pub mod element_operators;
 pub mod finite;
 pub mod flexible;
+pub mod force_table;
 pub mod joint;
 pub mod load;
 pub mod mobility;
@@ -28,11 +30,13 @@ pub mod table;
 pub mod time_function;
 
 pub use axes::Axes;
+pub use cable::{Cable, CablePoint};
 pub use contact::{Contact, Surface};
 pub use coupling::CoupledMotion;
 pub use distributed::{DistributedLoad, Spread};
 pub use drive::{DegreeOfFreedom, Drive};
 pub use flexible::{FlexibleBody, Form, Inertia, Modes};
+pub use force_table::ForceTable;
 pub use joint::{ConstraintRow, Fit, Joint, JointFrame, JointKind};
 pub use load::{Load, LoadKind};
 pub use mobility::Mobility;
@@ -72,7 +76,7 @@ impl<S: Scalar> Model<S> {
                     | LoadKind::Torque { .. }
                     | LoadKind::Distributed(_)
                     | LoadKind::Controller(_)
-            )
+            ) || matches!(&load.kind, LoadKind::Cable(own) if !own.is_fixed())
         };
         let driven = self.joints.iter().any(|joint| !joint.drives.is_empty());
         driven || self.loads.iter().any(feeds)
@@ -81,18 +85,25 @@ impl<S: Scalar> Model<S> {
     /// Whether energy is conserved: only springs and gravity do work.
     pub fn conserves_energy(&self) -> bool {
         let conserves = |load: &Load<S>| match &load.kind {
-            LoadKind::Spring { damping, .. } | LoadKind::TorsionSpring { damping, .. } => {
-                damping.re() == 0.0
+            LoadKind::Spring {
+                damping, tables, ..
             }
-            LoadKind::Damping { coefficient, .. }
-            | LoadKind::BallDamping { coefficient, .. }
-            | LoadKind::Drag { coefficient, .. } => coefficient.re() == 0.0,
+            | LoadKind::TorsionSpring {
+                damping, tables, ..
+            } => damping.re() == 0.0 && tables[1].is_none(),
+            LoadKind::Damping {
+                coefficient, table, ..
+            } => coefficient.re() == 0.0 && table.is_none(),
+            LoadKind::BallDamping { coefficient, .. } | LoadKind::Drag { coefficient, .. } => {
+                coefficient.re() == 0.0
+            }
             LoadKind::Bushing { damping, .. } => damping.iter().all(|x| x.re() == 0.0),
             LoadKind::Friction { size, .. } => size.re() == 0.0,
             LoadKind::JointStop { law, .. } | LoadKind::DistanceStop { law, .. } => {
                 law.dissipation.re() == 0.0
             }
             LoadKind::Contact(own) => own.law.dissipation.re() == 0.0 && own.friction.re() == 0.0,
+            LoadKind::Cable(own) => own.law.dissipation.re() == 0.0,
             // They are judged as what feeds the motion.
             LoadKind::Force { .. }
             | LoadKind::Torque { .. }
@@ -117,6 +128,14 @@ impl<S: Scalar> Model<S> {
     pub fn slack(&self) -> f64 {
         let rounded = self.joints.iter().filter(|joint| joint.fit.rounded);
         rounded.fold(0.0, |slack, joint| slack.max(joint.fit.tolerance))
+    }
+
+    /// Whether its parts hang together in ways that reductions do not look through: flexible bodies, couplings, controllers or
+    /// cables.
+    pub fn is_entangled(&self) -> bool {
+        let cables = |load: &Load<S>| matches!(load.kind, LoadKind::Cable(_));
+        let joined = self.is_coupled() || self.is_controlled();
+        joined || !self.flexible.is_empty() || self.loads.iter().any(cables)
     }
 
     /// Whether a body carries elastic coordinates, the coordinate of a coupling or the state of a controller, or counts turns.

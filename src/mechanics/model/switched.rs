@@ -37,6 +37,7 @@ impl<S: Scalar> Model<S> {
                     *magnitude = magnitude.since(start);
                 }
                 LoadKind::Distributed(own) => own.magnitude = own.magnitude.since(start),
+                LoadKind::Cable(own) => own.length = own.length.since(start),
                 LoadKind::Controller(own) => {
                     let courses = own.feedback.iter_mut().map(|own| &mut own.reference);
                     for course in courses.chain([&mut own.feed_forward]) {
@@ -104,17 +105,31 @@ impl<S: Scalar> LoadKind<S> {
                 stiffness,
                 cubic,
                 damping,
+                tables,
                 ..
             }
             | LoadKind::TorsionSpring {
                 stiffness,
                 cubic,
                 damping,
+                tables,
                 ..
-            } => (*stiffness, *cubic, *damping) = (zero, zero, zero),
-            LoadKind::Damping { coefficient, .. }
-            | LoadKind::BallDamping { coefficient, .. }
-            | LoadKind::Drag { coefficient, .. } => *coefficient = zero,
+            } => {
+                (*stiffness, *cubic, *damping) = (zero, zero, zero);
+                tables
+                    .iter_mut()
+                    .flatten()
+                    .for_each(|own| own.forces.fill(zero));
+            }
+            LoadKind::Damping {
+                coefficient, table, ..
+            } => {
+                *coefficient = zero;
+                table.iter_mut().for_each(|own| own.forces.fill(zero));
+            }
+            LoadKind::BallDamping { coefficient, .. } | LoadKind::Drag { coefficient, .. } => {
+                *coefficient = zero
+            }
             LoadKind::Bushing {
                 stiffness, damping, ..
             } => {
@@ -126,6 +141,7 @@ impl<S: Scalar> LoadKind<S> {
                 law.stiffness = zero;
             }
             LoadKind::Contact(own) => own.law.stiffness = zero,
+            LoadKind::Cable(own) => own.law.stiffness = zero,
             LoadKind::Controller(own) => own.acts = false,
         }
     }

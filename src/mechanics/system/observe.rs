@@ -76,7 +76,7 @@ pub fn observe(
     seen.potential += held.potential;
     seen.momentum += held.momentum;
     seen.angular_momentum += held.angular_momentum;
-    seen.potential += loads::potential(model, &motions);
+    seen.potential += loads::potential(model, &motions, time);
     let mut rows = vec![0.0; numbering.constraints()];
     let at = InMotion::new(model, numbering, &motions, time);
     joints::values(&at, &mut rows);

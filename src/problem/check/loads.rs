@@ -8,7 +8,9 @@ use crate::placement::GROUND;
 use crate::pointer::{advice, join};
 use crate::quantity::Quantity;
 use crate::schema::joints::Ends;
-use crate::schema::loads::{Bushing, Contact, Load, Motion, Stop, Surface, TimeFunction};
+use crate::schema::loads::{
+    Bushing, Cable, CableLength, Contact, ForceTable, Load, Motion, Stop, Surface, TimeFunction,
+};
 use crate::schema::measured::JointReaction;
 
 /// The joint of a load and its motion, or its two bodies and their points.
@@ -90,15 +92,35 @@ impl Checker<'_> {
                 if let Ends::Each(pair) = &spring.at {
                     self.pair(&join(pointer, "at"), &spring.between, pair);
                 }
+                self.strength(pointer, "stiffness", &spring.stiffness, &spring.table);
+                self.force_tables(pointer, [&spring.table, &spring.damping_table]);
             }
             Load::TorsionSpring(spring) => {
                 self.loaded_joint(pointer, &spring.joint, &[Revolute, Planar, Cylindrical]);
+                self.strength(pointer, "stiffness", &spring.stiffness, &spring.table);
+                self.force_tables(pointer, [&spring.table, &spring.damping_table]);
             }
             Load::Damping(damping) => {
                 let balls = [Spherical, Universal];
                 let kinds = [&[Revolute, Prismatic, Cylindrical, Planar], &balls[..]].concat();
                 self.loaded_joint(pointer, &damping.joint, &kinds);
                 self.joint_motion(pointer, &damping.joint, damping.motion);
+                self.strength(pointer, "coefficient", &damping.coefficient, &damping.table);
+                if let Some(table) = &damping.table {
+                    let table_at = join(pointer, "table");
+                    let joint = self.document.joints.get(&damping.joint);
+                    if joint.is_some_and(|joint| balls.contains(&joint.kind())) {
+                        let found = "a table of a joint with several rates";
+                        let expected = "a coefficient, or a joint with one rate";
+                        self.fault(Finding::new(&table_at, found, expected).of_key());
+                    }
+                    self.rising(
+                        &table_at,
+                        ("places", &table.places),
+                        ("forces", &table.forces),
+                    );
+                    self.resists(&table_at, table);
+                }
             }
             Load::Bushing(bushing) => self.bushing(pointer, bushing),
             Load::Friction(friction) => {
@@ -109,6 +131,7 @@ impl Checker<'_> {
             Load::Drag(drag) => self.moving(pointer, &drag.body, &drag.point),
             Load::Stop(stop) => self.stop(pointer, stop),
             Load::Contact(contact) => self.contact(pointer, contact),
+            Load::Cable(cable) => self.cable(pointer, cable),
             Load::Pressure(load) => {
                 self.loaded_elements(pointer, &load.body, ("faces", &load.faces));
                 self.course(&join(pointer, "pressure"), load.pressure.parts());
@@ -224,10 +247,10 @@ impl Checker<'_> {
         }
     }
 
-    /// Checks that a load is a spring, or a torsion spring.
+    /// Checks that a load is a spring or cable, or a torsion spring.
     pub(super) fn spring(&mut self, pointer: &str, name: &str, torsion: bool) {
         let fits = |load: &Load| match load {
-            Load::Spring(_) => !torsion,
+            Load::Spring(_) | Load::Cable(_) => !torsion,
             Load::TorsionSpring(_) => torsion,
             Load::Force(_)
             | Load::Torque(_)
@@ -243,7 +266,7 @@ impl Checker<'_> {
             | Load::Controller(_)
             | Load::Line(_) => false,
         };
-        let what = ["spring", "torsion spring"][usize::from(torsion)];
+        let what = ["spring or cable", "torsion spring"][usize::from(torsion)];
         self.load_of(
             pointer,
             name,
@@ -342,6 +365,36 @@ impl Checker<'_> {
         }
     }
 
+    /// Checks a cable: its points and its length.
+    fn cable(&mut self, pointer: &str, cable: &Cable) {
+        let list = join(pointer, "points");
+        if cable.points.len() < 2 {
+            let found = format!("{} of them", cable.points.len());
+            self.fault(Finding::new(&list, found, "two points or more"));
+        }
+        if cable.points.iter().all(|own| own.body == GROUND) {
+            let expected = "a point of a body";
+            self.fault(Finding::new(&list, "points of ground alone", expected));
+        }
+        for (k, own) in cable.points.iter().enumerate() {
+            let place = join(&list, k);
+            if own.body != GROUND {
+                self.body(&join(&place, "body"), &own.body);
+            }
+            match &own.point {
+                Some(point) => self.point(&join(&place, "point"), &own.body, point),
+                None if own.body == GROUND => {
+                    let expected = "\"point\" in ground coordinates";
+                    self.fault(Finding::new(place, "a place of ground", expected).of_key());
+                }
+                None => {}
+            }
+        }
+        if let CableLength::Varying(course) = &cable.length {
+            self.motion(&join(pointer, "length"), course.parts());
+        }
+    }
+
     /// Checks that a load is a stop or a contact.
     pub(super) fn stop_of(&mut self, pointer: &str, name: &str, friction: bool) {
         let fits = |load: &Load| match load {
@@ -399,16 +452,68 @@ impl Checker<'_> {
 
     /// Checks the table of a time function.
     pub(super) fn table(&mut self, pointer: &str, times: &[f64], values: &[Quantity]) {
-        let table = join(pointer, "table");
-        if times.len() < 2 || times.len() != values.len() {
-            let found = format!("{} times and {} values", times.len(), values.len());
-            let expected = "as many values as times, and at least two of each";
-            self.fault(Finding::new(&table, found, expected));
+        self.rising(
+            &join(pointer, "table"),
+            ("times", times),
+            ("values", values),
+        );
+    }
+
+    /// Checks that a table has two points or more, in ascending order.
+    fn rising(
+        &mut self,
+        table: &str,
+        (at, places): (&str, &[f64]),
+        (of, values): (&str, &[Quantity]),
+    ) {
+        if places.len() < 2 || places.len() != values.len() {
+            let found = format!("{} {at} and {} {of}", places.len(), values.len());
+            let expected = format!("as many {of} as {at}, and at least two of each");
+            self.fault(Finding::new(table, found, expected));
         }
-        if let Some(k) = (1..times.len()).find(|&k| times[k] <= times[k - 1]) {
-            let found = format!("{} after {}", times[k], times[k - 1]);
-            let place = join(&join(&table, "times"), k);
-            self.fault(Finding::new(place, found, "times that increase"));
+        if let Some(k) = (1..places.len()).find(|&k| places[k] <= places[k - 1]) {
+            let found = format!("{} after {}", places[k], places[k - 1]);
+            let place = join(&join(table, at), k);
+            self.fault(Finding::new(place, found, format!("{at} that increase")));
+        }
+    }
+
+    /// Checks that a load has the number of its strength or a table.
+    fn strength(
+        &mut self,
+        pointer: &str,
+        key: &str,
+        number: &Option<Quantity>,
+        table: &Option<ForceTable>,
+    ) {
+        if number.is_none() && table.is_none() {
+            let expected = format!("\"{key}\", \"table\" or both");
+            self.fault(Finding::new(pointer, format!("no \"{key}\""), expected).of_key());
+        }
+    }
+
+    /// Checks the tables of a spring, over its stretch and over its rate.
+    fn force_tables(&mut self, pointer: &str, tables: [&Option<ForceTable>; 2]) {
+        for (key, table) in ["table", "damping_table"].into_iter().zip(tables) {
+            let Some(table) = table else { continue };
+            let place = join(pointer, key);
+            self.rising(&place, ("places", &table.places), ("forces", &table.forces));
+            if key == "damping_table" {
+                self.resists(&place, table);
+            }
+        }
+    }
+
+    /// Checks that a damper by a table takes energy and never gives it.
+    fn resists(&mut self, pointer: &str, table: &ForceTable) {
+        let mut points = table.places.iter().zip(&table.forces).enumerate();
+        if let Some((k, (rate, force))) =
+            points.find(|(_, (rate, force))| *rate * force.value < 0.0)
+        {
+            let found = format!("{} at the rate {rate}", force.value);
+            let expected = "a force with the sign of its rate, as a damper takes energy";
+            let place = join(&join(pointer, "forces"), k);
+            self.fault(Finding::new(place, found, expected));
         }
     }
 }

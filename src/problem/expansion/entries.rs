@@ -151,6 +151,14 @@ impl Writer<'_> {
         for k in 0..of_controller[1] {
             used.rename_body(entry["gravity_compensation"][k].get_mut("body"));
         }
+        let points = entry.get_mut("points").and_then(Value::as_array_mut);
+        for (k, point) in points.into_iter().flatten().enumerate() {
+            used.rename_body(point.get_mut("body"));
+            if point.get("body").is_some_and(|body| body == GROUND) {
+                let place = join(&join(&join(pointer, "points"), k), "point");
+                self.moved(used, point.get_mut("point"), &place, true);
+            }
+        }
         let at = join(pointer, "at");
         match entry.get_mut("at") {
             own @ Some(Value::String(_)) => used.rename_location(own),

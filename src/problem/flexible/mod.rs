@@ -406,6 +406,13 @@ impl<S: Scalar> FlexibleBodies<S> {
                         self.move_place(model, load, body, &mut own.point_b);
                     }
                 }
+                LoadKind::Cable(own) => {
+                    for own in &mut own.points {
+                        if let Some(body) = &mut own.body {
+                            self.move_place(model, load, body, &mut own.point);
+                        }
+                    }
+                }
                 LoadKind::Torque { body, .. } => {
                     if let Load::Torque(torque) = written
                         && let Some(point) = &torque.point

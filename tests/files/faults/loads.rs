@@ -36,6 +36,24 @@ faults! {
     a_contact_with_an_unknown_surface:
         r#""joints": {"# =>
         r#""loads": {"load": {"contact": {"between": ["rod", "con_rod"], "at": {"a": "tip", "b": [0, 0, 0]}, "surface": {"cone": {"radius": 0}}, "stiffness": 5, "width": 0.1}}}, "joints": {"#;
+    a_spring_without_strength:
+        r#""joints": {"# =>
+        r#""loads": {"load": {"spring": {"between": ["rod", "ground"], "at": [[0, 0, 0], [1, 0, 0]], "rest_length": 1}}}, "joints": {"#;
+    a_spring_with_a_short_table:
+        r#""joints": {"# =>
+        r#""loads": {"load": {"spring": {"between": ["rod", "ground"], "at": [[0, 0, 0], [1, 0, 0]], "rest_length": 1, "table": {"places": [0, 1, 1], "forces": [0, 1]}}}}, "joints": {"#;
+    a_damper_that_drives:
+        r#""joints": {"# =>
+        r#""loads": {"load": {"damping": {"joint": "crank", "table": {"places": [-1, 0, 1], "forces": [1, 0, 1]}}}}, "joints": {"#;
+    a_damping_table_of_a_ball:
+        r#""joints": {"# =>
+        r#""loads": {"load": {"damping": {"joint": "pin", "table": {"places": [-1, 1], "forces": [-1, 1]}}}}, "joints": {"#;
+    a_cable_of_one_point:
+        r#""joints": {"# =>
+        r#""loads": {"load": {"cable": {"points": [{"body": "rod"}], "length": 1, "stiffness": 5, "width": 0.1}}}, "joints": {"#;
+    a_cable_of_ground:
+        r#""joints": {"# =>
+        r#""loads": {"load": {"cable": {"points": [{"body": "ground"}, {"body": "ground", "point": [1, 0, 0]}], "length": 1, "stiffness": 5, "width": 0.1}}}, "joints": {"#;
     a_force_on_ground:
         r#""joints": {"# =>
         r#""loads": {"load": {"force": {"body": "ground", "direction": [0, 1, 0], "magnitude": 5}}}, "joints": {"#;

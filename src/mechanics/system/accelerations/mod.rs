@@ -390,7 +390,7 @@ impl<'a, S: SolveScalar> Accelerations<'a, S> {
     }
 
     /// Size of the power that loads and drives supply at the velocities `v` with the multipliers λ,
-    /// |f·v| + |λ·Φ_t| \[W\].
+    /// |f·v| + |λ·Φ_t| and that of winches \[W\].
     pub fn supplied_power(&mut self, v: &[S], lambda: &[S]) -> f64 {
         let mut all = std::mem::take(&mut self.rhs);
         all.fill(S::zero());
@@ -401,7 +401,8 @@ impl<'a, S: SolveScalar> Accelerations<'a, S> {
             let terms = x.iter().zip(y).map(|(&x, &y)| (x * y).re());
             terms.sum::<f64>().abs()
         };
-        let power = product(forces, v) + product(rates, lambda);
+        let winches = loads::cable::winch_power(&self.here()).re().abs();
+        let power = product(forces, v) + product(rates, lambda) + winches;
         self.rhs = all;
         power
     }

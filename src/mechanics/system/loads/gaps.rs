@@ -1,7 +1,7 @@
-//! How near the stops and contacts of a scene are, for the control of steps.
+//! How near the stops, contacts and slack cables of a scene are, for the control of steps.
 
 use super::power::speed_seen;
-use super::{contact, for_loads, stop};
+use super::{cable, contact, for_loads, stop};
 use crate::math::Scalar;
 use crate::model::{LoadKind, Model};
 use crate::system::bodies::BodyMotion;
@@ -25,18 +25,18 @@ const FELT: f64 = 0.25;
 
 /// Whether a load presses only behind a limit.
 pub fn may_touch<S>(kind: &LoadKind<S>) -> bool {
-    stop::of(kind).is_some() || matches!(kind, LoadKind::Contact(_))
+    stop::of(kind).is_some() || matches!(kind, LoadKind::Contact(_) | LoadKind::Cable(_))
 }
 
-/// Lists the gaps of those of the loads `of` that may touch, always in the same order.
+/// Lists the gaps at `time` of those of the loads `of` that may touch, always in the same order.
 pub fn gaps<S: Scalar>(
     model: &Model<S>,
-    motions: &[BodyMotion<S>],
+    (motions, time): (&[BodyMotion<S>], f64),
     of: Range<usize>,
     out: &mut Vec<Gap>,
 ) {
     out.clear();
-    for_loads(model, motions, of, |load, kind, at| {
+    for_loads(model, motions, of.clone(), |load, kind, at| {
         let mut add = |penetration: f64, speed: f64, width: S| {
             out.push(Gap {
                 load,
@@ -53,4 +53,9 @@ pub fn gaps<S: Scalar>(
             add(depth, speed_seen(at), own.law.width);
         }
     });
+    for load in of {
+        if let LoadKind::Cable(own) = &model.loads[load].kind {
+            out.push(cable::gap((own, load), motions, time.into(), FELT));
+        }
+    }
 }

@@ -2,7 +2,7 @@
 //! files of their own.
 
 use super::pull::{Pulled, Virtual, moving, with_motions};
-use super::{Acting, bushing, contact, drag, power, pull, stop};
+use super::{Acting, bushing, contact, drag, power, pull, spring, stop};
 use crate::math::{Scalar, Vec3};
 use crate::model::LoadKind;
 
@@ -15,6 +15,9 @@ pub(super) fn forces<S: Scalar>(
     let none = (Vec3::zeros(), Vec3::zeros());
     if let Some(stop) = stop::of(kind) {
         return stop.forces(at);
+    }
+    if let Some(spring) = spring::of(kind) {
+        return spring.forces(at);
     }
     match kind {
         LoadKind::Contact(contact) => contact::forces(contact, at),
@@ -42,6 +45,10 @@ pub(super) fn pulled<S: Scalar>(
         stop.pull(at, &virtually, &mut out);
         return out;
     }
+    if let Some(spring) = spring::of(kind) {
+        spring.pull(at, &virtually, &mut out);
+        return out;
+    }
     match kind {
         LoadKind::Contact(contact) => contact::pull(contact, at, &virtually, &mut out),
         LoadKind::Bushing {
@@ -60,10 +67,13 @@ pub(super) fn potential<S: Scalar>(kind: &LoadKind<S>, at: &Acting<S>) -> S {
     if let Some(stop) = stop::of(kind) {
         return stop.potential(at);
     }
+    if let Some(spring) = spring::of(kind) {
+        return spring.potential(at);
+    }
     match kind {
         LoadKind::Contact(contact) => contact::potential(contact, at),
         LoadKind::Bushing { stiffness, .. } => bushing::potential(stiffness, at),
-        _ => power::potential(kind, at),
+        _ => S::zero(),
     }
 }
 
@@ -78,12 +88,16 @@ pub(super) fn pulled_potential<S: Scalar>(
         stop.pull_potential(at, weight, &mut out);
         return Some(out);
     }
+    if let Some(spring) = spring::of(kind) {
+        spring.pull_potential(at, weight, &mut out);
+        return Some(out);
+    }
     match kind {
         LoadKind::Contact(contact) => contact::pull_potential(contact, at, weight, &mut out),
         LoadKind::Bushing { stiffness, .. } => {
             bushing::pull_potential(stiffness, at, weight, &mut out);
         }
-        _ => return pull::pull_potential(kind, at, weight),
+        _ => return None,
     }
     Some(out)
 }

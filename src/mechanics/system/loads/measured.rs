@@ -1,10 +1,9 @@
 //! Quantities of springs, stops, contacts and controllers for functions, with their derivatives.
 
-use super::power::{angle, stretch, tension, torsion, turn_rate};
-use super::pull::{Pulled, pull_angle, pull_rate, pull_turn};
+use super::pull::Pulled;
 use super::{
-    Acting, LoadCotangent, contact, controlled, for_each_load, give_to_parameters, give_to_states,
-    stop,
+    Acting, LoadCotangent, cable, contact, controlled, for_each_load, give_to_parameters,
+    give_to_states, spring, stop,
 };
 use crate::math::Scalar;
 use crate::model::{Contact, LoadKind};
@@ -14,9 +13,9 @@ use crate::system::joints::JointCotangent;
 /// Kind of quantity of a load.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum LoadPart {
-    /// The distance of the points of a spring \[m\].
+    /// The distance of the points of a spring, or the length of a cable from end to end \[m\].
     Length,
-    /// The force by which a spring pulls its points together, damping included \[N\].
+    /// The force by which a spring or cable pulls its points together, damping included \[N\].
     Tension,
     /// The torque by which a torsion spring turns its joint back, damping included \[N m\].
     Torque,
@@ -54,6 +53,8 @@ pub fn value<S: Scalar>(at: &InMotion<S>, measure: LoadMeasure) -> S {
     let own = match measure.part {
         LoadPart::EffortForce | LoadPart::EffortTorque => controlled::effort(at, measure.load),
         LoadPart::ErrorLength | LoadPart::ErrorAngle => controlled::error(at, measure.load),
+        LoadPart::Length => cable::measure(at, measure.load, false),
+        LoadPart::Tension => cable::measure(at, measure.load, true),
         _ => None,
     };
     if let Some(value) = own {
@@ -72,12 +73,8 @@ const CHECKED: &str = "a load has this measure, which is checked";
 
 fn of<S: Scalar>(kind: &LoadKind<S>, at: &Acting<S>, part: LoadPart) -> S {
     match part {
-        LoadPart::Length => stretch(at, spring(kind)).length,
-        LoadPart::Tension => {
-            let law = spring(kind);
-            tension(&stretch(at, law), law)
-        }
-        LoadPart::Torque => torsion(at, torsion_spring(kind)),
+        LoadPart::Length => spring::of(kind).expect(CHECKED).length(at),
+        LoadPart::Tension | LoadPart::Torque => spring::of(kind).expect(CHECKED).tension(at),
         LoadPart::Penetration | LoadPart::PenetrationAngle => match kind {
             LoadKind::Contact(own) => contact::penetration(own, at),
             _ => stop::of(kind).expect(CHECKED).penetration(at),
@@ -94,42 +91,12 @@ fn of<S: Scalar>(kind: &LoadKind<S>, at: &Acting<S>, part: LoadPart) -> S {
     }
 }
 
-/// Rest length, k, k3 and c of a spring.
-fn spring<S: Scalar>(kind: &LoadKind<S>) -> [S; 4] {
-    let LoadKind::Spring {
-        rest_length,
-        stiffness,
-        cubic,
-        damping,
-        ..
-    } = kind
-    else {
-        unreachable!("{CHECKED}")
-    };
-    [*rest_length, *stiffness, *cubic, *damping]
-}
-
 /// The contact that a load is.
 fn touching<S>(kind: &LoadKind<S>) -> &Contact<S> {
     let LoadKind::Contact(own) = kind else {
         unreachable!("{CHECKED}")
     };
     own
-}
-
-/// Rest angle, k, k3 and c of a torsion spring.
-fn torsion_spring<S: Scalar>(kind: &LoadKind<S>) -> [S; 4] {
-    let LoadKind::TorsionSpring {
-        rest_angle,
-        stiffness,
-        cubic,
-        damping,
-        ..
-    } = kind
-    else {
-        unreachable!("{CHECKED}")
-    };
-    [*rest_angle, *stiffness, *cubic, *damping]
 }
 
 /// Adds `weight` times the derivative of [`value`] to states and parameters. Returns the derivative in time.
@@ -153,6 +120,12 @@ pub fn pull_back(
         LoadPart::ErrorLength | LoadPart::ErrorAngle => {
             controlled::pull_error(at, measure.load, weight, &mut to);
         }
+        LoadPart::Length | LoadPart::Tension
+            if matches!(at.model.loads[measure.load].kind, LoadKind::Cable(_)) =>
+        {
+            let tension = measure.part == LoadPart::Tension;
+            cable::pull_measure(at, (measure.load, tension), weight, &mut to);
+        }
         _ => pull_others(at, measure, weight, out),
     }
     by_time
@@ -172,34 +145,12 @@ fn pull(kind: &LoadKind<f64>, at: &Acting<f64>, part: LoadPart, weight: f64) -> 
     let mut out = Pulled::zero();
     match part {
         LoadPart::Length => {
-            let now = stretch(at, spring(kind));
-            pull_rate(at, &now, (weight, 0.0), &mut out);
+            let own = spring::of(kind).expect(CHECKED);
+            own.pull_length(at, weight, &mut out);
         }
-        LoadPart::Tension => {
-            let law @ [rest_length, stiffness, cubic, damping] = spring(kind);
-            let now = stretch(at, law);
-            let x = now.length - rest_length;
-            let by_length = weight * (stiffness + 3.0 * cubic * x * x);
-            pull_rate(at, &now, (by_length, weight * damping), &mut out);
-            out.set_scalars([
-                -by_length,
-                weight * x,
-                weight * x * x * x,
-                weight * now.rate,
-            ]);
-        }
-        LoadPart::Torque => {
-            let [rest_angle, stiffness, cubic, damping] = torsion_spring(kind);
-            let x = angle(at, rest_angle);
-            let by_angle = weight * (stiffness + 3.0 * cubic * x * x);
-            pull_angle(at, by_angle, &mut out);
-            pull_turn(at, weight * damping, &mut out);
-            out.set_scalars([
-                -by_angle,
-                weight * x,
-                weight * x * x * x,
-                weight * turn_rate(at),
-            ]);
+        LoadPart::Tension | LoadPart::Torque => {
+            let own = spring::of(kind).expect(CHECKED);
+            own.pull_tension(at, weight, &mut out);
         }
         LoadPart::Penetration | LoadPart::PenetrationAngle => {
             if let LoadKind::Contact(own) = kind {

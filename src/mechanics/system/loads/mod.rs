@@ -2,11 +2,12 @@
 //!
 //! For virtual velocities ψ, ψᵀf is the power of a load, linear in ψ. `power.rs` has the forces and
 //! `pull.rs` the transposed derivative of the power, once for each kind and for any scalar. Forces,
-//! Jacobians and pull-backs all use these two, so they agree. Stops have both in `stop.rs`, contacts in
+//! Jacobians and pull-backs all use these two, so they agree. Springs have both in `spring.rs`, stops in `stop.rs`, contacts in
 //! `contact.rs`, controllers in `control_law.rs` and `controller.rs` with the limits of their motors in `motor.rs`, bushings in `bushing.rs`, and the law of the former is in `normal_law.rs`. Loads that are spread over the elements of a
 //! flexible body act on its coordinates too: `distributed.rs` has all of theirs.
 
 mod bushing;
+pub mod cable;
 mod contact;
 mod control_law;
 mod controlled;
@@ -22,6 +23,7 @@ mod normal_law;
 mod parameters;
 mod power;
 mod pull;
+mod spring;
 mod stop;
 pub mod work;
 
@@ -124,7 +126,7 @@ fn for_loads<S: Scalar>(
             | LoadKind::BallDamping { joint, .. }
             | LoadKind::Bushing { joint, .. }
             | LoadKind::Friction { joint, .. } => on_joint(*joint),
-            LoadKind::Distributed(_) | LoadKind::Controller(_) => continue,
+            LoadKind::Distributed(_) | LoadKind::Controller(_) | LoadKind::Cable(_) => continue,
         };
         visit(i, &load.kind, &acting);
     }
@@ -142,6 +144,7 @@ pub fn add_forces<S: Scalar>(here: &InMotion<S>, out: &mut [S]) {
     });
     distributed::add_forces(here, out);
     controller::add_forces(here, out);
+    cable::add_forces(here, out);
 }
 
 /// Adds the forces that supply energy to `out`, in velocity numbering: forces, torques, efforts of controllers, and loads
@@ -188,8 +191,18 @@ fn blocks<S: Scalar>(kind: &LoadKind<S>) -> Blocks {
             Axes::Ground => of(ANGULAR, ANGULAR, NONE),
             Axes::Body => of(NONE, NONE, NONE),
         },
-        LoadKind::Spring { damping, .. } => of(BOTH, BOTH, damped(damping, BOTH)),
-        LoadKind::TorsionSpring { damping, .. } => of(ANGULAR, ANGULAR, damped(damping, ANGULAR)),
+        LoadKind::Spring {
+            damping, tables, ..
+        } => match tables[1] {
+            Some(_) => of(BOTH, BOTH, BOTH),
+            None => of(BOTH, BOTH, damped(damping, BOTH)),
+        },
+        LoadKind::TorsionSpring {
+            damping, tables, ..
+        } => match tables[1] {
+            Some(_) => of(ANGULAR, ANGULAR, ANGULAR),
+            None => of(ANGULAR, ANGULAR, damped(damping, ANGULAR)),
+        },
         LoadKind::Contact(_) => of(BOTH, BOTH, BOTH),
         LoadKind::Bushing { damping, .. } => match damping.iter().all(|c| c.is_zero()) {
             true => of(BOTH, BOTH, NONE),
@@ -212,7 +225,9 @@ fn blocks<S: Scalar>(kind: &LoadKind<S>) -> Blocks {
             DegreeOfFreedom::Rotation => of(ANGULAR, ANGULAR, ANGULAR),
             DegreeOfFreedom::Translation => of(BOTH, BOTH, BOTH),
         },
-        LoadKind::Distributed(_) | LoadKind::Controller(_) => of(NONE, NONE, NONE),
+        LoadKind::Distributed(_) | LoadKind::Controller(_) | LoadKind::Cable(_) => {
+            of(NONE, NONE, NONE)
+        }
     }
 }
 
@@ -268,6 +283,7 @@ pub fn emit_jacobian<S: Scalar>(here: &InMotion<S>, to: &LoadEntries<S>, emit: &
     });
     distributed::emit_jacobian(here, to, emit);
     controller::emit_jacobian(here, to, emit);
+    cable::emit_jacobian(here, to, emit);
 }
 
 /// Destination of the pull-back of the loads.
@@ -298,6 +314,7 @@ pub fn pull_back(here: &InMotion<f64>, psi: &[f64], out: &mut LoadCotangent) {
     });
     distributed::pull_back(here, psi, out);
     controller::pull_back(here, psi, out);
+    cable::pull_back(here, psi, out);
 }
 
 fn give_to_states(
@@ -318,61 +335,46 @@ fn give_to_states(
     }
 }
 
-/// The first spring, stop or contact of length zero in the placement whose ends may not meet, if any.
+/// The first spring, stop, contact or part of a cable of length zero in the placement whose ends may not meet, if any.
 pub fn without_length(model: &Model<f64>) -> Option<&str> {
     let (q, v) = guess(model);
     let mut motions = Vec::new();
     BodyMotion::all(&Numbering::new(model), &q, &v, &mut motions);
     let mut found = None;
     for_each_load(model, &motions, |i, kind, at| {
-        if let LoadKind::Spring {
-            rest_length,
-            stiffness,
-            cubic,
-            damping,
-            ..
-        } = kind
-            && let law = [*rest_length, *stiffness, *cubic, *damping]
-            && !power::may_meet(law)
-            && power::stretch(at, law).length == 0.0
-        {
-            found = found.or(Some(i));
-        }
         let meets = match kind {
             LoadKind::DistanceStop { .. } => power::apart(at).length == 0.0,
             LoadKind::Contact(own) => contact::meets(own, at),
-            _ => false,
+            _ => spring::of(kind).is_some_and(|own| own.is_without_direction(at)),
         };
         if meets {
             found = found.or(Some(i));
         }
     });
-    found.map(|i| model.loads[i].name.as_str())
+    let cables = model
+        .loads
+        .iter()
+        .position(|load| matches!(&load.kind, LoadKind::Cable(own) if cable::meets(own, &motions)));
+    found.or(cables).map(|i| model.loads[i].name.as_str())
 }
 
-/// Potential energy of the springs, Σ ½ k x² + ¼ k3 x⁴ (torsion springs: Σ ½ k x²), and of stops and contacts \[J\].
-pub fn potential<S: Scalar>(model: &Model<S>, motions: &[BodyMotion<S>]) -> S {
-    let mut sum = S::zero();
+/// Potential energy of springs, bushings, stops, contacts and cables \[J\] at `time`.
+pub fn potential<S: Scalar>(model: &Model<S>, motions: &[BodyMotion<S>], time: S) -> S {
+    let mut sum = cable::potential(model, motions, time);
     for_each_load(model, motions, |_, kind, at| {
         sum += kinds::potential(kind, at);
     });
     sum
 }
 
-/// Adds `weight` times the derivative of [`potential`] to tangent positions and parameters.
-pub fn pull_potential(
-    model: &Model<f64>,
-    numbering: &Numbering,
-    motions: &[BodyMotion<f64>],
-    weight: f64,
-    y: &mut [f64],
-    cot: &mut Model<f64>,
-) {
-    for_each_load(model, motions, |i, kind, at| {
+/// Adds `weight` times the derivative of [`potential`] to tangent positions, time and parameters.
+pub fn pull_potential(here: &InMotion<f64>, weight: f64, out: &mut LoadCotangent) {
+    for_each_load(here.model, here.motions, |i, kind, at| {
         let Some(pulled) = kinds::pulled_potential(kind, at, weight) else {
             return;
         };
-        give_to_states(&pulled, at, numbering, (&mut Some(&mut *y), &mut None));
-        give_to_parameters(kind, &pulled, (i, 0.0), (cot, &mut 0.0));
+        give_to_states(&pulled, at, here.numbering, (&mut out.y, &mut None));
+        give_to_parameters(kind, &pulled, (i, 0.0), (out.model, &mut 0.0));
     });
+    cable::pull_potential(here, weight, out);
 }

@@ -1,7 +1,7 @@
 //! Adds the derivatives of a load's power to the cotangents of its parameters.
 
 use super::pull::Pulled;
-use super::{bushing, contact, stop};
+use super::{bushing, contact, spring, stop};
 use crate::model::{JointFrame, LoadKind, Model};
 
 /// Adds the derivatives in a load's parameters to the cotangent of the model, and that in time to
@@ -40,7 +40,7 @@ pub(super) fn give_to_parameters(
             *by_time += magnitude.pull_back(now, [s0, 0.0, 0.0], own);
         }
         (
-            LoadKind::Spring { .. },
+            LoadKind::Spring { tables, .. },
             LoadKind::Spring {
                 point_a,
                 point_b,
@@ -48,6 +48,7 @@ pub(super) fn give_to_parameters(
                 stiffness,
                 cubic,
                 damping,
+                tables: own,
                 ..
             },
         ) => {
@@ -57,14 +58,16 @@ pub(super) fn give_to_parameters(
             *stiffness += s1;
             *cubic += s2;
             *damping += s3;
+            spring::give_tables(pulled, tables, own);
         }
         (
-            LoadKind::TorsionSpring { joint, .. },
+            LoadKind::TorsionSpring { joint, tables, .. },
             LoadKind::TorsionSpring {
                 rest_angle,
                 stiffness,
                 cubic,
                 damping,
+                tables: own,
                 ..
             },
         ) => {
@@ -72,10 +75,21 @@ pub(super) fn give_to_parameters(
             *stiffness += s1;
             *cubic += s2;
             *damping += s3;
+            spring::give_tables(pulled, tables, own);
             give_to_joint(model, *joint, pulled);
         }
-        (LoadKind::Damping { joint, .. }, LoadKind::Damping { coefficient, .. }) => {
+        (
+            LoadKind::Damping { joint, table, .. },
+            LoadKind::Damping {
+                coefficient,
+                table: own,
+                ..
+            },
+        ) => {
             *coefficient += s0;
+            if let (Some(table), Some(own)) = (table, own) {
+                table.pull_back(pulled.places[1], [pulled.by_tables[1], 0.0], own);
+            }
             give_to_joint(model, *joint, pulled);
         }
         (LoadKind::BallDamping { .. }, LoadKind::BallDamping { coefficient, .. }) => {
@@ -130,12 +144,14 @@ pub(super) fn give_to_parameters(
         }
         (LoadKind::Contact(_), LoadKind::Contact(own)) => contact::give(pulled, own),
         (LoadKind::Distributed(_), LoadKind::Distributed(_))
+        | (LoadKind::Cable(_), LoadKind::Cable(_))
         | (LoadKind::Controller(_), LoadKind::Controller(_)) => {}
         (
             LoadKind::Force { .. }
             | LoadKind::Torque { .. }
             | LoadKind::Distributed(_)
             | LoadKind::Controller(_)
+            | LoadKind::Cable(_)
             | LoadKind::Spring { .. }
             | LoadKind::TorsionSpring { .. }
             | LoadKind::Damping { .. }

@@ -1,9 +1,9 @@
-//! The forces of each kind of load, and the energy of springs.
+//! The forces of the simple kinds of load, and what the others are made of.
 
 use super::Acting;
 use crate::math::scalar::length;
 use crate::math::{Scalar, Vec3};
-use crate::model::{Axes, ConstraintRow, DegreeOfFreedom, LoadKind};
+use crate::model::{Axes, ConstraintRow, DegreeOfFreedom, ForceTable, LoadKind};
 use crate::system::bodies::BodyMotion;
 use crate::system::constraint;
 use crate::system::marker::MarkerKinematics;
@@ -20,7 +20,7 @@ pub(super) fn forces<S: Scalar>(
 ) -> [(Vec3<S>, Vec3<S>); 2] {
     let none = (Vec3::zeros(), Vec3::zeros());
     let (ra, rb) = (&at.a.motion.rotation, &at.b.motion.rotation);
-    let (sa, sb) = (&at.a.frame.point, &at.b.frame.point);
+    let sa = &at.a.frame.point;
     match kind {
         LoadKind::Force {
             direction,
@@ -48,34 +48,12 @@ pub(super) fn forces<S: Scalar>(
             };
             [(Vec3::zeros(), torque), none]
         }
-        LoadKind::Spring {
-            rest_length,
-            stiffness,
-            cubic,
-            damping,
-            ..
-        } => {
-            let law = [*rest_length, *stiffness, *cubic, *damping];
-            let at = stretch(at, law);
-            let f = at.direction * tension(&at, law);
-            [
-                (-f, -sa.cross(&ra.tr_mul(&f))),
-                (f, sb.cross(&rb.tr_mul(&f))),
-            ]
-        }
-        LoadKind::TorsionSpring {
-            rest_angle,
-            stiffness,
-            cubic,
-            damping,
-            ..
-        } => about_axis(
-            at,
-            -torsion(at, [*rest_angle, *stiffness, *cubic, *damping]),
-        ),
         LoadKind::Damping {
-            dof, coefficient, ..
-        } => along(at, *dof, |rate| -(*coefficient * rate)),
+            dof,
+            coefficient,
+            table,
+            ..
+        } => along(at, *dof, |rate| damping(*coefficient, table, rate)[0]),
         LoadKind::Friction {
             dof, size, width, ..
         } => along(at, *dof, |rate| -(*size * tanh(rate / *width))),
@@ -88,66 +66,24 @@ pub(super) fn forces<S: Scalar>(
             ]
         }
         // They have files of their own.
-        LoadKind::JointStop { .. }
+        LoadKind::Spring { .. }
+        | LoadKind::TorsionSpring { .. }
+        | LoadKind::JointStop { .. }
         | LoadKind::DistanceStop { .. }
         | LoadKind::Drag { .. }
         | LoadKind::Contact(_)
         | LoadKind::Bushing { .. }
         | LoadKind::Controller(_)
+        | LoadKind::Cable(_)
         | LoadKind::Distributed(_) => [none, none],
     }
 }
 
-/// Tension k x + k3 x³ + c l̇ of a spring \[N\], from its rest length, k, k3 and c.
-pub(super) fn tension<S: Scalar>(at: &SpringLength<S>, [rest, k, k3, c]: [S; 4]) -> S {
-    let x = at.length - rest;
-    x * (k + k3 * x * x) + c * at.rate
-}
-
-/// Torque k x + k3 x³ + c φ̇ of a torsion spring \[N m\], from its rest angle, k, k3 and c.
-pub(super) fn torsion<S: Scalar>(at: &Acting<S>, [rest, k, k3, c]: [S; 4]) -> S {
-    let x = angle(at, rest);
-    x * (k + k3 * x * x) + c * turn_rate(at)
-}
-
-/// Potential energy of a load \[J\]; zero if it stores none.
-pub(super) fn potential<S: Scalar>(kind: &LoadKind<S>, at: &Acting<S>) -> S {
-    match kind {
-        LoadKind::Spring {
-            rest_length,
-            stiffness,
-            cubic,
-            damping,
-            ..
-        } => {
-            let law = [*rest_length, *stiffness, *cubic, *damping];
-            let x = stretch(at, law).length - *rest_length;
-            let square = x * x;
-            square * (*stiffness * 0.5 + *cubic * square * 0.25)
-        }
-        LoadKind::TorsionSpring {
-            rest_angle,
-            stiffness,
-            cubic,
-            ..
-        } => {
-            let x = angle(at, *rest_angle);
-            let square = x * x;
-            square * (*stiffness * 0.5 + *cubic * square * 0.25)
-        }
-        LoadKind::JointStop { .. }
-        | LoadKind::DistanceStop { .. }
-        | LoadKind::Contact(_)
-        | LoadKind::Force { .. }
-        | LoadKind::Torque { .. }
-        | LoadKind::Controller(_)
-        | LoadKind::Distributed(_)
-        | LoadKind::Damping { .. }
-        | LoadKind::BallDamping { .. }
-        | LoadKind::Bushing { .. }
-        | LoadKind::Friction { .. }
-        | LoadKind::Drag { .. } => S::zero(),
-    }
+/// The force −(c r + D(r)) of a damper at the rate r, and its slope.
+pub(super) fn damping<S: Scalar>(c: S, table: &Option<ForceTable<S>>, rate: S) -> [S; 2] {
+    let own = table.as_ref().map(|table| table.force(rate));
+    let [force, slope] = own.unwrap_or([S::zero(); 2]);
+    [-(c * rate + force), -(c + slope)]
 }
 
 /// Forces of size `law(rate)` along or about the axis of a joint.
@@ -169,7 +105,7 @@ fn along<S: Scalar>(
     }
 }
 
-fn about_axis<S: Scalar>(at: &Acting<S>, torque: S) -> [(Vec3<S>, Vec3<S>); 2] {
+pub(super) fn about_axis<S: Scalar>(at: &Acting<S>, torque: S) -> [(Vec3<S>, Vec3<S>); 2] {
     let e = at.a.frame.axes[2];
     let in_b = at.b.motion.rotation.tr_mul(&(at.a.motion.rotation * e));
     [(Vec3::zeros(), e * torque), (Vec3::zeros(), in_b * -torque)]
@@ -204,26 +140,6 @@ pub(super) struct SpringLength<S> {
     pub direction: Vec3<S>,
     /// The vector from B to A.
     pub apart: Vec3<S>,
-}
-
-/// Whether the ends of a spring of this rest length, k, k3 and c may meet: its force −(k + k3 l²) d is then smooth at d = 0.
-pub(super) fn may_meet<S: Scalar>([rest, _, _, c]: [S; 4]) -> bool {
-    rest.re() == 0.0 && c.re() == 0.0
-}
-
-/// The stretch of a spring of this rest length, k, k3 and c. Where ends meet that may, it has no direction, and the rate
-/// of its length is set to zero.
-pub(super) fn stretch<S: Scalar>(at: &Acting<S>, law: [S; 4]) -> SpringLength<S> {
-    let d = at.a.point() - at.b.point();
-    if may_meet(law) && d.iter().all(|x| x.re() == 0.0) {
-        return SpringLength {
-            length: S::zero(),
-            rate: S::zero(),
-            direction: Vec3::zeros(),
-            apart: d,
-        };
-    }
-    apart(at)
 }
 
 /// The distance of the points of a load. The points are apart.

@@ -1,7 +1,7 @@
 //! The transposed derivative of the power ψᵀf of each kind of load.
 
 use super::Acting;
-use super::power::{SLIDE, SpringLength, angle, may_meet, stretch, tanh, turn_rate};
+use super::power::{SLIDE, SpringLength, damping, tanh, turn_rate};
 use crate::math::{Scalar, Vec3};
 use crate::model::{Axes, ConstraintRow, DegreeOfFreedom, LoadKind};
 use crate::system::bodies::BodyMotion;
@@ -26,6 +26,10 @@ pub(super) struct Pulled<S> {
     pub scalars: [S; SCALARS],
     /// Of a bushing: vectors a, b, c, so that the derivatives in its matrices are a bᵀ and a cᵀ.
     pub six: Option<[[S; 6]; 3]>,
+    /// Where the tables of a spring or damper are read: at the stretch and at its rate.
+    pub places: [S; 2],
+    /// In the forces of both tables there, and in the energy of the first.
+    pub by_tables: [S; 3],
 }
 
 impl<S: Scalar> Pulled<S> {
@@ -36,6 +40,8 @@ impl<S: Scalar> Pulled<S> {
             direction: Vec3::zeros(),
             scalars: [S::zero(); SCALARS],
             six: None,
+            places: [S::zero(); 2],
+            by_tables: [S::zero(); 3],
         }
     }
 
@@ -127,65 +133,16 @@ pub(super) fn pull<S: Scalar>(
             out.direction = by * m;
             out.scalars[0] = by.dot(direction);
         }
-        LoadKind::Spring {
-            rest_length,
-            stiffness,
-            cubic,
-            damping,
-            ..
-        } => {
-            let law = [*rest_length, *stiffness, *cubic, *damping];
-            if may_meet(law) {
-                *out = pull_meeting((at, virtually), law);
-                return;
-            }
-            let now = stretch(at, law);
-            let virtual_rate = stretch(virtually, law).rate;
-            let x = now.length - *rest_length;
-            let tension = x * (*stiffness + *cubic * x * x) + *damping * now.rate;
-            // ψᵀf = −tension · (virtual rate).
-            let by_length = -(*stiffness + *cubic * x * x * 3.0) * virtual_rate;
-            pull_rate(virtually, &now, (S::zero(), -tension), out);
-            hold_virtual(out);
-            pull_rate(at, &now, (by_length, -(*damping * virtual_rate)), out);
-            out.set_scalars([
-                -by_length,
-                -(x * virtual_rate),
-                -(x * x * x * virtual_rate),
-                -(now.rate * virtual_rate),
-            ]);
-        }
-        LoadKind::TorsionSpring {
-            rest_angle,
-            stiffness,
-            cubic,
-            damping,
-            ..
-        } => {
-            let (x, rate) = (angle(at, *rest_angle), turn_rate(at));
-            let virtual_rate = turn_rate(virtually);
-            let square = x * x;
-            let torque = x * (*stiffness + *cubic * square) + *damping * rate;
-            let by_angle = -(*stiffness + *cubic * square * 3.0) * virtual_rate;
-            pull_turn(virtually, -torque, out);
-            hold_virtual(out);
-            pull_turn(at, -(*damping * virtual_rate), out);
-            pull_angle(at, by_angle, out);
-            out.set_scalars([
-                -by_angle,
-                -(x * virtual_rate),
-                -(x * square * virtual_rate),
-                -(rate * virtual_rate),
-            ]);
-        }
         LoadKind::Damping {
             dof,
-            coefficient: c,
+            coefficient,
+            table,
             ..
         } => {
-            let (rate, virtual_rate) =
-                pull_along(at, virtually, *dof, |rate| (-(*c * rate), -*c), out);
+            let law = |rate: S| damping(*coefficient, table, rate).into();
+            let (rate, virtual_rate) = pull_along(at, virtually, *dof, law, out);
             out.scalars[0] = -(rate * virtual_rate);
+            (out.places[1], out.by_tables[1]) = (rate, -virtual_rate);
         }
         LoadKind::Friction {
             dof, size, width, ..
@@ -215,68 +172,17 @@ pub(super) fn pull<S: Scalar>(
             out.b.omega = yb * c;
         }
         // They have files of their own.
-        LoadKind::JointStop { .. }
+        LoadKind::Spring { .. }
+        | LoadKind::TorsionSpring { .. }
+        | LoadKind::JointStop { .. }
         | LoadKind::DistanceStop { .. }
         | LoadKind::Drag { .. }
         | LoadKind::Contact(_)
         | LoadKind::Bushing { .. }
         | LoadKind::Controller(_)
+        | LoadKind::Cable(_)
         | LoadKind::Distributed(_) => {}
     }
-}
-
-/// Derivatives of `weight` times a load's potential energy; `None` if it stores none.
-pub(super) fn pull_potential<S: Scalar>(
-    kind: &LoadKind<S>,
-    at: &Acting<S>,
-    weight: S,
-) -> Option<Pulled<S>> {
-    let mut out = Pulled::zero();
-    match kind {
-        LoadKind::Spring {
-            rest_length,
-            stiffness,
-            cubic,
-            damping,
-            ..
-        } => {
-            let now = stretch(at, [*rest_length, *stiffness, *cubic, *damping]);
-            let x = now.length - *rest_length;
-            let square = x * x;
-            let by_x = weight * x * (*stiffness + *cubic * square);
-            pull_rate(at, &now, (by_x, S::zero()), &mut out);
-            out.scalars[0] = -by_x;
-            out.scalars[1] = weight * square * 0.5;
-            out.scalars[2] = weight * square * square * 0.25;
-        }
-        LoadKind::TorsionSpring {
-            rest_angle,
-            stiffness,
-            cubic,
-            ..
-        } => {
-            let x = angle(at, *rest_angle);
-            let square = x * x;
-            let by_x = weight * x * (*stiffness + *cubic * square);
-            pull_angle(at, by_x, &mut out);
-            out.scalars[0] = -by_x;
-            out.scalars[1] = weight * square * 0.5;
-            out.scalars[2] = weight * square * square * 0.25;
-        }
-        LoadKind::JointStop { .. }
-        | LoadKind::DistanceStop { .. }
-        | LoadKind::Contact(_)
-        | LoadKind::Force { .. }
-        | LoadKind::Torque { .. }
-        | LoadKind::Controller(_)
-        | LoadKind::Distributed(_)
-        | LoadKind::Damping { .. }
-        | LoadKind::BallDamping { .. }
-        | LoadKind::Bushing { .. }
-        | LoadKind::Friction { .. }
-        | LoadKind::Drag { .. } => return None,
-    }
-    Some(out)
 }
 
 /// Clears the derivatives in velocities, because the virtual ones are constant.
@@ -321,35 +227,6 @@ pub(super) fn pull_axis<S: Scalar>(
     );
     out.theta += by.theta;
     out.frame.axes[axis] += by.vector;
-}
-
-/// Derivatives of the power −(k + k3 l²) d · w of a spring whose ends may meet, w their virtual velocity from each other.
-/// Its rest length and its damping are zero, with derivatives where the spring has a direction.
-fn pull_meeting<S: Scalar>(
-    (at, virtually): (&Acting<S>, &Acting<S>),
-    law @ [_, k, k3, _]: [S; 4],
-) -> Pulled<S> {
-    let mut out = Pulled::zero();
-    let now = stretch(at, law);
-    let d = now.apart;
-    let speed = |side: &JointSide<S>| side.point_jet().rate;
-    let w = speed(&virtually.a) - speed(&virtually.b);
-    let square = d.dot(&d);
-    let (force, power, zero) = (k + k3 * square, d.dot(&w), Vec3::zeros());
-    pull_point(&virtually.a, [zero, -d * force], &mut out.a);
-    pull_point(&virtually.b, [zero, d * force], &mut out.b);
-    hold_virtual(&mut out);
-    let by_d = -(w * force + d * (k3 * power * 2.0));
-    pull_point(&at.a, [by_d, zero], &mut out.a);
-    pull_point(&at.b, [-by_d, zero], &mut out.b);
-    let along = now.direction.dot(&w);
-    out.set_scalars([
-        (k + k3 * square * 3.0) * along,
-        -power,
-        -(square * power),
-        -(now.rate * along),
-    ]);
-    out
 }
 
 /// Pulls the cotangents of a spring's length and its rate back.

@@ -47,6 +47,7 @@ pub(super) fn of<S>(kind: &LoadKind<S>) -> Option<Stop<'_, S>> {
         | LoadKind::Drag { .. }
         | LoadKind::Contact(_)
         | LoadKind::Controller(_)
+        | LoadKind::Cable(_)
         | LoadKind::Distributed(_) => return None,
     };
     Some(Stop {

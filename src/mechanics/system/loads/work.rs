@@ -4,7 +4,7 @@ use super::kinds::{forces, pulled as pull};
 use super::parameters::{give_to_joint, give_to_parameters};
 use super::power::{SLIDE, turn_rate};
 use super::pull::{Pulled, pull_slide, pull_turn};
-use super::{Acting, LoadCotangent, controlled, distributed, for_each_load, give_to_states};
+use super::{Acting, LoadCotangent, cable, controlled, distributed, for_each_load, give_to_states};
 use crate::math::{Scalar, Vec3};
 use crate::model::DegreeOfFreedom;
 use crate::system::bodies::{BodyMotion, add6};
@@ -20,7 +20,9 @@ fn velocities<S: Scalar>(at: &Acting<S>) -> [(Vec3<S>, Vec3<S>); 2] {
 /// The power \[W\] by which a load drives its bodies: Σ (Fᵀ ṙ + Mᵀ ω), over the nodes of a load that is spread over
 /// elements. Positive if it gives energy to them.
 pub fn power<S: Scalar>(here: &InMotion<S>, load: usize) -> S {
-    let own = distributed::power(here, load).or_else(|| controlled::power(here, load));
+    let own = distributed::power(here, load)
+        .or_else(|| controlled::power(here, load))
+        .or_else(|| cable::power(here, load));
     if let Some(power) = own {
         return power;
     }
@@ -64,6 +66,7 @@ pub fn pull_power(here: &InMotion<f64>, load: usize, weight: f64, out: &mut Join
     };
     distributed::pull_power(here, load, weight, &mut to);
     controlled::pull_power(here, load, weight, &mut to);
+    cable::pull_power(here, load, weight, &mut to);
     by_time
 }
 
