@@ -2,7 +2,8 @@
 //!
 //! `cargo bench --bench bed` runs all of them, prints a summary and how it differs from the table
 //! `benches/bed/table.csv`, for all and for two halves. `-- --write` renews the table, `-- --only TEXT` runs the problems whose
-//! names contain it, `-- --trace` prints their iterations.
+//! names contain it, `-- --trace` prints their iterations, `-- --null K` scales the objectives by a factor that differs
+//! from one by K × 1e-7: what it changes is chance.
 
 mod case;
 mod ends;
@@ -96,11 +97,12 @@ impl Observer for Trace {
     }
 }
 
-fn run(case: &mut Case, method: Method, trace: bool) -> Run {
-    let options = Options {
+fn run(case: &mut Case, method: Method, null: f64, trace: bool) -> Run {
+    let mut options = Options {
         method,
         ..Options::default()
     };
+    options.scaling_gradient *= 1.0 + 1e-7 * null;
     let observer: &mut dyn Observer = if trace { &mut Trace } else { &mut Silent };
     let outcome = solve(case.nlp.as_mut(), &options, observer);
     if trace {
@@ -133,6 +135,7 @@ fn main() {
     };
     let only = after("--only");
     let method = after("--method");
+    let null = after("--null").map_or(0.0, |k| k.parse().expect("a number"));
     let mut runs = Vec::new();
     for wanted in METHODS {
         if method.as_ref().is_some_and(|m| *m != format!("{wanted:?}")) {
@@ -143,7 +146,7 @@ fn main() {
                 .as_ref()
                 .is_none_or(|text| case.name.contains(text.as_str()))
             {
-                runs.push((case.group, run(&mut case, wanted, has("--trace"))));
+                runs.push((case.group, run(&mut case, wanted, null, has("--trace"))));
             }
         }
     }

@@ -178,6 +178,7 @@ fn designs() -> Vec<Case> {
 fn degenerate() -> Vec<Case> {
     [
         hard::maratos(),
+        hard::cart_pole(),
         hard::complementarity(),
         hard::rank_deficient(),
         hard::redundant(),

@@ -5,14 +5,11 @@
 
 use nalgebra::DVector;
 
+use crate::constants::UNIT;
 use crate::linear::quasi_newton::QuasiNewton;
 use crate::multipliers::{ScaledMultipliers, least_squares};
 use crate::outcome::Kkt;
 use crate::program::{Derivatives, Point, Program};
-
-/// Unit of forces where the gradient vanishes, as a part of the typical gradient. Ten times more or less
-/// changes the count of solved problems by at most one.
-const UNIT: f64 = 0.1;
 
 /// Size of forces, in the units of the user: that of the gradient or, if it vanishes, of the
 /// gradients at other points of the run.

@@ -3,7 +3,7 @@
 
 use nalgebra::DVector;
 
-use crate::constants::STEPS;
+use crate::constants::{AGREE, STEPS};
 use crate::ending::FinalIterate;
 use crate::multipliers::{ScaledMultipliers, user_multipliers};
 use crate::program::{Derivatives, Point, Program};
@@ -72,9 +72,6 @@ fn unless_multipliers_fail(program: &mut Program<'_>, mut finish: FinalIterate) 
     }
     finish
 }
-
-/// Differences by different steps agree to this share of their distance to the derivative.
-const AGREE: f64 = 0.1;
 
 /// A run without a solution becomes [`Status::Inconsistent`] if its gradients are wrong. A run at a
 /// limit is not tested: with a higher limit it must go on as if it had not ended.

@@ -1,10 +1,9 @@
 //! The least violation of the worst row, if no point satisfies all rows.
 
-use nalgebra::{DMatrix, DVector};
+use nalgebra::DVector;
 
 use crate::constants::SMALL_PART;
 use crate::linear::jacobian::Jacobian;
-use crate::linear::quasi_newton::Spectrum;
 use crate::observer::Phase;
 use crate::program::{Derivatives, EarlyExit, Point, Program, Progress};
 use crate::quadratic::data::{Hessian, QpData};
@@ -66,9 +65,7 @@ pub(crate) fn least_violation(
             least = true;
             break;
         }
-        let x = DVector::from_fn(d.len(), |i, _| {
-            (point.x[i] + d[i]).clamp(program.lower[i], program.upper[i])
-        });
+        let x = program.within_bounds(&point.x + &d);
         let size = d.amax();
         let tried = program
             .evaluate(&x)
@@ -141,18 +138,7 @@ fn step(
     });
     // It makes the step unique, and does not decide.
     let sigma = SMALL_PART * worst / (radius * radius);
-    let dense = n <= program.options.dense_subproblems();
-    let diagonal;
-    let b = if dense {
-        diagonal = DMatrix::from_diagonal_element(n + 1, n + 1, sigma);
-        Hessian::Dense(&diagonal)
-    } else {
-        Hessian::Split(Spectrum {
-            sigma,
-            vectors: DMatrix::zeros(n + 1, 0),
-            values: DVector::zeros(0),
-        })
-    };
+    let b = Hessian::multiple(sigma, n + 1, n <= program.options.dense_subproblems());
     let data = QpData {
         g: &g,
         b: &b,

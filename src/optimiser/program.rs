@@ -242,6 +242,11 @@ impl<'a> Program<'a> {
         full
     }
 
+    /// The nearest point between the bounds.
+    pub(crate) fn within_bounds(&self, x: DVector<f64>) -> DVector<f64> {
+        DVector::from_fn(x.len(), |i, _| x[i].clamp(self.lower[i], self.upper[i]))
+    }
+
     /// Wall time since the start of the run \[s\].
     pub(crate) fn seconds(&self) -> f64 {
         self.nlp.seconds_since(self.started)

@@ -37,10 +37,7 @@ pub(crate) fn outcome(program: &Program<'_>, finish: FinalIterate, state: SavedS
         ..
     } = finish;
     let x = program.to_user(&point.x);
-    let mut constraints = vec![0.0; program.scaling.constraints.len()];
-    for (k, &j) in program.rows.iter().enumerate() {
-        constraints[j] = point.c[k] / program.scaling.constraints[j];
-    }
+    let constraints = program.user_constraints(&point.c);
     let user = user_multipliers(program, &slopes, &multipliers);
     let nlp = program.nlp();
     let (lower, upper) = nlp.variable_bounds();

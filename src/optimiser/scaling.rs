@@ -5,7 +5,7 @@ use std::time::Instant;
 
 use nalgebra::DVector;
 
-use crate::constants::FAR;
+use crate::constants::{FAR, UNIT};
 use crate::evaluations::unless_panicked;
 use crate::linear::curvature::Curvature;
 use crate::program::{Derivatives, EarlyExit, Point, Program};
@@ -13,7 +13,7 @@ use crate::state::Scaling;
 use crate::status::Status;
 
 /// Largest factor of a function. A gradient that is smaller by this factor is rounding. A thousandfold
-/// limit makes far starts end at the limit of evaluations.
+/// limit makes far starts end at the limit of evaluations, a tenfold one costs HS25 twice its evaluations.
 const LARGEST_LIFT: f64 = 1e12;
 
 /// A restart keeps the units of the variables if the size of the point is between these. Always to
@@ -271,12 +271,9 @@ impl Program<'_> {
         typical.copied().unwrap_or(1.0)
     }
 
-    /// Unit of an objective that vanishes, in the unit of the user.
+    /// Unit of an objective that vanishes, in the unit of the user: that of forces times a tenth of a unit of the
+    /// variables. Ten times more makes a false claim.
     pub(crate) fn unit_of_objective(&self) -> f64 {
-        UNIT_OF_OBJECTIVE * self.typical_gradient() * self.length
+        UNIT * self.typical_gradient() * UNIT * self.length
     }
 }
-
-/// Unit of a vanishing objective, as a part of the typical gradient times one unit. Ten times more makes
-/// a false claim.
-const UNIT_OF_OBJECTIVE: f64 = 0.01;

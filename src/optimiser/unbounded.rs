@@ -70,10 +70,6 @@ impl Program<'_> {
         Ok(true)
     }
 
-    fn within_bounds(&self, x: DVector<f64>) -> DVector<f64> {
-        DVector::from_fn(x.len(), |i, _| x[i].clamp(self.lower[i], self.upper[i]))
-    }
-
     /// A point that satisfies the rows, by steps of Newton that are shortest where each variable is measured
     /// by its `size`: far out these differ by many orders. The last point if there is none.
     fn restored(&mut self, mut point: Point, size: &DVector<f64>) -> Result<Point, EarlyExit> {

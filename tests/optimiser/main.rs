@@ -1,6 +1,7 @@
 //! The optimiser on programs with known optima.
 
 mod curvature;
+mod curved;
 mod derivatives;
 mod disagree;
 mod endings;

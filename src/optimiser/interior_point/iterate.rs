@@ -2,7 +2,7 @@
 
 use nalgebra::{Cholesky, DVector, Dyn};
 
-use crate::constants::SMALL_PART;
+use crate::constants::{DENSE, SMALL_PART};
 use crate::linear::jacobian::Jacobian;
 use crate::linear::kkt_sparse::SparseKkt;
 use crate::linear::quasi_newton::Separable;
@@ -263,7 +263,7 @@ enum NormalEquations {
 impl NormalEquations {
     fn factor(layout: &Layout, a: &Jacobian) -> Option<NormalEquations> {
         let (m, n) = a.shape();
-        if m.max(n) > SMALL {
+        if m.max(n) > DENSE {
             let mut d = DVector::zeros(m);
             for &j in &layout.slack_rows {
                 d[j] = 1.0;
@@ -290,10 +290,6 @@ impl NormalEquations {
         }
     }
 }
-
-/// Number of rows and variables up to which least-squares multipliers come from dense matrices. Sparse ones
-/// alone lose two problems of the bed.
-const SMALL: usize = 200;
 
 /// Distance between `bound` and the start: `push` relative to max(1, |bound|), at most that part of
 /// the distance of two bounds.

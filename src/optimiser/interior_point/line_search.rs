@@ -2,6 +2,7 @@
 
 use nalgebra::DVector;
 
+use crate::constants::MOST_STEPS;
 use crate::interior_point::direction::{Direction, NewtonSystem};
 use crate::interior_point::filter::{Filter, MARGIN, Measure, SLOPE_POWER, THETA_POWER};
 use crate::interior_point::iterate::{Iterate, Layout};
@@ -26,10 +27,6 @@ pub(crate) const GAIN: f64 = 0.9;
 /// Least factor by which a refused step is shortened, and a corrected one may be shorter. By halving
 /// alone, two problems of the bed are lost.
 const SHORTEST: f64 = 0.1;
-
-/// Number of halved steps that are announced where the functions are undefined. More would seldom be
-/// requested.
-const FORESEEN: i32 = 16;
 
 /// Below this sum of scaled residuals a point counts as feasible. The residuals are then mostly
 /// rounding, and the barrier function alone decides. A tenth or ten times as much is the same.
@@ -184,8 +181,9 @@ impl LineSearch<'_> {
     /// Announces the shorter steps that follow if the functions are undefined at step length
     /// `alpha`.
     fn foresee(&self, program: &mut Program<'_>, direction: &Direction, alpha: f64) {
-        let at = |k: i32| &self.at.point.x + &direction.x * (alpha * 0.5_f64.powi(k));
-        program.foresee((1..=FORESEEN).map(at));
+        let half = |length: &f64| Some(0.5 * length);
+        let lengths = std::iter::successors(half(&alpha), half).take(MOST_STEPS);
+        program.foresee(lengths.map(|length| &self.at.point.x + &direction.x * length));
     }
 
     /// Factor by which a refused step is shortened. If the barrier function refused the step, it is

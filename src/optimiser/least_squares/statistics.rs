@@ -2,10 +2,7 @@
 
 use nalgebra::{DMatrix, DVector};
 
-use crate::constants::{HALF_OF_DIGITS, ROUND_OFF};
-
-/// Part of a direction below which a variable does not belong to it.
-const BELONGS: f64 = 1e-5;
+use crate::constants::{HALF_OF_DIGITS, ROUND_OFF, SMALL_PART};
 
 /// Where the covariance gets its scale from.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -108,7 +105,7 @@ pub fn statistics(fit: &Fit<'_>) -> Option<Statistics> {
         let largest = direction.amax();
         let sign = direction[direction.iamax()].signum();
         let entries = direction.iter().enumerate();
-        let parts = entries.filter(|(_, v)| v.abs() > BELONGS * largest);
+        let parts = entries.filter(|(_, v)| v.abs() > SMALL_PART * largest);
         let parts: Vec<(usize, f64)> = parts.map(|(c, v)| (free[c], sign * v / largest)).collect();
         parts.iter().for_each(|&(i, _)| open[i] = true);
         parts

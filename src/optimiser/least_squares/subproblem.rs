@@ -1,5 +1,7 @@
 //! The step of a sum of squares in its region of trust.
 
+use std::borrow::Cow;
+
 use nalgebra::{DMatrix, DVector};
 
 use super::model::SquaresModel;
@@ -50,7 +52,7 @@ impl Fitting<'_> {
         a.scale_columns(&units);
         let data = QpData {
             g: &g,
-            b: &Hessian::Dense(&h),
+            b: &Hessian::Dense(Cow::Borrowed(&h)),
             a: &a,
             above: &(&program.row_upper - self.c),
             below: &(self.c - &program.row_lower),

@@ -5,12 +5,9 @@ use std::borrow::Cow;
 use nalgebra::{Cholesky, DMatrix, DVector};
 use serde::{Deserialize, Serialize};
 
-use crate::constants::ROUND_OFF;
+use crate::constants::{DENSE, HALF_OF_DIGITS, ROUND_OFF};
 use crate::linear::compact::Compact;
 use crate::linear::curvature::Curvature;
-
-/// Least cosine of step and gradient difference for which a pair is used: √ε. It does not decide.
-const CURVATURE: f64 = 1.5e-8;
 
 /// Factor of the scale σ when pairs without positive curvature clear the memory. Without this, five problems
 /// of the bed are lost, seven by the trust region.
@@ -18,10 +15,6 @@ const FLATTER: f64 = 0.1;
 
 /// Share of a change of the gradient that a separable model may leave unexplained.
 const FORETOLD: f64 = 0.2;
-
-/// Largest number of pairs from which a dense matrix is rebuilt. With 30, the trust region loses five
-/// problems of the bed.
-const DENSE_PAIRS: usize = 200;
 
 /// BFGS matrix B, built from pairs s = x₊ − x and y = ∇L(x₊) − ∇L(x).
 ///
@@ -106,7 +99,7 @@ impl QuasiNewton {
     /// The identity, of order `n`, kept dense up to `dense_limit`.
     pub(crate) fn new(n: usize, dense_limit: usize, memory: usize) -> QuasiNewton {
         let dense = n <= dense_limit;
-        let memory = if dense { DENSE_PAIRS } else { memory.max(1) };
+        let memory = if dense { DENSE } else { memory.max(1) };
         let pairs = Vec::new();
         QuasiNewton {
             n,
@@ -237,7 +230,8 @@ impl QuasiNewton {
         if !(sy.is_finite() && ss.is_finite() && yy.is_finite()) || ss == 0.0 {
             return;
         }
-        if sy <= CURVATURE * (ss * yy).sqrt() {
+        // The cosine of step and gradient difference. How small it may be does not decide.
+        if sy <= HALF_OF_DIGITS * (ss * yy).sqrt() {
             self.skipped += 1;
             if self.skipped >= 2 {
                 self.reset();
@@ -303,7 +297,7 @@ impl QuasiNewton {
         let of_model = DVector::from_fn(self.n, |i, _| self.model[i] * s[i]);
         if pair.foretold.len() == self.n {
             let whole = &of_model + y - &pair.foretold;
-            if s.dot(&whole) > CURVATURE.sqrt() * s.norm() * whole.norm() {
+            if s.dot(&whole) > HALF_OF_DIGITS.sqrt() * s.norm() * whole.norm() {
                 return Cow::Owned(whole);
             }
         }

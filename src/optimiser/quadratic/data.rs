@@ -1,5 +1,7 @@
 //! A quadratic subproblem, its solution, and how Clarabel is set.
 
+use std::borrow::Cow;
+
 use clarabel::solver::{DefaultSettings, DefaultSettingsBuilder};
 use nalgebra::{DMatrix, DVector};
 
@@ -11,11 +13,23 @@ const TOLERANCE: f64 = 1e-10;
 
 /// Positive definite matrix of a subproblem.
 pub(crate) enum Hessian<'a> {
-    Dense(&'a DMatrix<f64>),
+    Dense(Cow<'a, DMatrix<f64>>),
     Split(Spectrum),
 }
 
 impl Hessian<'_> {
+    /// σ I of order `n`.
+    pub(crate) fn multiple(sigma: f64, n: usize, dense: bool) -> Self {
+        if dense {
+            return Hessian::Dense(Cow::Owned(DMatrix::from_diagonal_element(n, n, sigma)));
+        }
+        Hessian::Split(Spectrum {
+            sigma,
+            vectors: DMatrix::zeros(n, 0),
+            values: DVector::zeros(0),
+        })
+    }
+
     /// A bound on its entries.
     pub(crate) fn amax(&self) -> f64 {
         match self {
@@ -26,7 +40,7 @@ impl Hessian<'_> {
 
     pub(crate) fn multiply(&self, d: &DVector<f64>) -> DVector<f64> {
         match self {
-            Hessian::Dense(b) => *b * d,
+            Hessian::Dense(b) => b.as_ref() * d,
             Hessian::Split(b) => {
                 let mut part = b.vectors.tr_mul(d);
                 for (v, lambda) in part.iter_mut().zip(b.values.iter()) {

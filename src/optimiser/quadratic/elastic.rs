@@ -6,15 +6,12 @@ use clarabel::algebra::CscMatrix;
 use clarabel::solver::{DefaultSolver, IPSolver, NonnegativeConeT, SolverStatus};
 use nalgebra::DVector;
 
+use crate::constants::HALF_OF_DIGITS;
 use crate::linear::jacobian::Jacobian;
 use crate::outcome::Counts;
 use crate::quadratic::data::{Hessian, QpData, QpStep, settings};
 use crate::quadratic::refined::refine;
 use crate::quadratic::split;
-
-/// A step below this part of its box is lost in the tolerances of Clarabel. Without a second solution the
-/// truss of 200 bars ends at a violation of 1e-13 of the limits.
-const SHORT: f64 = 1e-4;
 
 /// The subproblem
 ///
@@ -57,7 +54,7 @@ impl ElasticQp {
         }
         let size = found.d.amax();
         let radius = data.upper.amax().max(data.lower.amax());
-        if size == 0.0 || size > SHORT * radius {
+        if size == 0.0 || size > HALF_OF_DIGITS.sqrt() * radius {
             return Some(found);
         }
         let (lower, upper) = (

@@ -3,15 +3,8 @@
 
 use nalgebra::{DMatrix, DVector};
 
-use crate::constants::{ROUND_OFF, SMALL_PART};
+use crate::constants::{AGREE, ROUND_OFF, SMALL_PART};
 use crate::quadratic::data::{Hessian, QpData, QpStep};
-
-/// Distance from a bound of the box, relative to its size, at which a step counts as on it.
-const ON_BOX: f64 = 1e-7;
-
-/// Largest difference of the refined step, as a part of the box. Largest violation of a condition
-/// by rounding, as a part of the forces and of the box.
-const DIFFERENCE: f64 = 1e-2;
 
 /// Solves the conditions for the active set of `found` as equations,
 ///
@@ -29,9 +22,9 @@ pub(crate) fn refine(data: &QpData<'_>, found: &QpStep) -> Option<QpStep> {
     let mut d = DVector::zeros(n);
     let mut inside = Vec::new();
     for i in 0..n {
-        if found.d[i] - data.lower[i] <= ON_BOX * radius {
+        if found.d[i] - data.lower[i] <= SMALL_PART * radius {
             d[i] = data.lower[i];
-        } else if data.upper[i] - found.d[i] <= ON_BOX * radius {
+        } else if data.upper[i] - found.d[i] <= SMALL_PART * radius {
             d[i] = data.upper[i];
         } else {
             inside.push(i);
@@ -60,7 +53,7 @@ pub(crate) fn refine(data: &QpData<'_>, found: &QpStep) -> Option<QpStep> {
     // Scales rows and forces to entries of the same size.
     let unit = b.amax().max(f64::MIN_POSITIVE);
     let norm = |j: usize| data.a.row_amax(j).max(1e-100);
-    let fixed_force = data.g + *b * &d;
+    let fixed_force = data.g + b.as_ref() * &d;
     let fixed_rows = data.a * &d;
     let matrix = DMatrix::from_fn(p + q, p + q, |r, c| match (r < p, c < p) {
         (true, true) => b[(inside[r], inside[c])] / unit,
@@ -97,7 +90,7 @@ fn is_valid(data: &QpData<'_>, found: &QpStep, refined: &QpStep, radius: f64, fo
     let residual = data.g + data.b.multiply(d) + data.a.tr_mul(y);
     let reached = data.a * d;
     let (small, weak) = (ROUND_OFF * radius, ROUND_OFF * force);
-    let near = (d - &found.d).amax() <= DIFFERENCE * radius;
+    let near = (d - &found.d).amax() <= AGREE * radius;
     let in_box = (0..d.len()).all(|i| {
         let push = residual[i];
         d[i] >= data.lower[i]

@@ -135,7 +135,7 @@ impl TrustRegion {
                 return Ok(ending);
             }
             let size = self.length(&model.step.d);
-            let stays = self.inside(program, &model.step.d) == self.point.x;
+            let stays = program.within_bounds(&self.point.x + &model.step.d) == self.point.x;
             let rounding = f64::EPSILON * self.merit(program, &self.point).abs().max(1e-8);
             lost = if model.predicted <= rounding {
                 lost + 1
@@ -274,7 +274,7 @@ impl TrustRegion {
     ) -> Result<(f64, usize), EarlyExit> {
         let here = self.merit(program, &self.point);
         let rounding = 10.0 * f64::EPSILON * here.abs();
-        let x = self.inside(program, &model.step.d);
+        let x = program.within_bounds(&self.point.x + &model.step.d);
         let trial = match program.evaluate(&x) {
             Ok(trial) => trial,
             Err(EarlyExit::Failed(_)) => return Ok((f64::NEG_INFINITY, 1)),
@@ -297,7 +297,7 @@ impl TrustRegion {
         let Some(corrected) = self.solve_qp(program, self.weight(), &c) else {
             return Ok((first, 1));
         };
-        let x = self.inside(program, &corrected.d);
+        let x = program.within_bounds(&self.point.x + &corrected.d);
         let second = match program.evaluate(&x) {
             Ok(second) => second,
             Err(EarlyExit::Failed(_)) => return Ok((first, 2)),
@@ -308,14 +308,6 @@ impl TrustRegion {
             return Ok((gain, 2));
         }
         Ok((first, 2))
-    }
-
-    /// Point reached by `d`, never outside the bounds by rounding.
-    fn inside(&self, program: &Program<'_>, d: &DVector<f64>) -> DVector<f64> {
-        let x = &self.point.x + d;
-        DVector::from_fn(x.len(), |i, _| {
-            x[i].clamp(program.lower[i], program.upper[i])
-        })
     }
 
     /// Adds the curvature between the point and a refused point to the matrix, after the second

@@ -1,12 +1,14 @@
 //! The subproblem of a trust region, with penalties that lead towards feasible points
-//! (Byrd, Lopez-Calva & Nocedal 2012).
+//! (Byrd, Lopez-Calva & Nocedal 2012) and fall again to ten times the multipliers.
 
-use nalgebra::{DMatrix, DVector};
+use std::borrow::Cow;
+
+use nalgebra::DVector;
 
 use crate::constants::HALF_OF_DIGITS;
 use crate::least_squares::model::SquaresModel;
 use crate::least_squares::subproblem::Fitting;
-use crate::linear::quasi_newton::{QuasiNewton, Spectrum};
+use crate::linear::quasi_newton::QuasiNewton;
 use crate::program::{Derivatives, Point, Program};
 use crate::quadratic::data::{Hessian, QpData, QpStep};
 use crate::quadratic::elastic::ElasticQp;
@@ -86,6 +88,13 @@ impl TrustRegion {
                 left = self.linear_violation(program, &step.d);
             }
         }
+        if self.goal == Goal::Optimum && left <= small {
+            // Penalties that outlive the points which needed them make steps follow curved rows closely: the swing-up
+            // of a cart-pole ends at the limit of iterations. The multipliers of one step may mislead.
+            for (penalty, y) in self.penalty.iter_mut().zip(step.y.iter()) {
+                *penalty = penalty.min((10.0 * y.abs()).max(0.4 * *penalty).max(1.0));
+            }
+        }
         let d = &step.d;
         let bd = match &self.squares {
             Some(squares) => squares.hessian() * d,
@@ -153,19 +162,11 @@ impl TrustRegion {
             (keep * (program.upper[i] - x[i])).clamp(0.0, radius)
         });
         let n = x.len();
-        let diagonal: DMatrix<f64>;
-        let b = match (self.b.is_dense(), of_steering) {
-            (true, false) => Hessian::Dense(self.b.dense()),
-            (true, true) => {
-                diagonal = DMatrix::from_diagonal_element(n, n, steering);
-                Hessian::Dense(&diagonal)
-            }
+        let dense = self.b.is_dense();
+        let b = match (of_steering, dense) {
+            (true, _) => Hessian::multiple(steering, n, dense),
+            (false, true) => Hessian::Dense(Cow::Borrowed(self.b.dense())),
             (false, false) => Hessian::Split(self.b.spectrum()),
-            (false, true) => Hessian::Split(Spectrum {
-                sigma: steering,
-                vectors: DMatrix::zeros(n, 0),
-                values: DVector::zeros(0),
-            }),
         };
         let g = &self.slopes.g * weight;
         let data = QpData {

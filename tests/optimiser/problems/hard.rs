@@ -105,3 +105,42 @@ pub fn large(n: usize) -> Problem {
         (0..n / 4).map(disc).chain((0..n / 4).map(curve)).collect()
     })
 }
+
+/// The swing-up of a pole on a cart in two seconds by 41 nodes of a linear force within 11 N, from rest to rest
+/// a metre away, with the least integral of the squared force (Kelly 2017, SIAM Review 59(4), section 6).
+pub fn cart_pole() -> Problem {
+    let start: Vec<f64> = (0..41)
+        .map(|k| 6.0 * (std::f64::consts::PI * f64::from(k) / 20.0).cos())
+        .collect();
+    Problem::new("cart-pole", &start, 58.2173366, |u| {
+        let pairs = u.windows(2);
+        pairs.fold(Dual::from(0.0), |sum, p| {
+            sum + 0.05 / 3.0 * (p[0] * p[0] + p[0] * p[1] + p[1] * p[1])
+        })
+    })
+    .all_within(-11.0, 11.0)
+    .rows(0, 4, |u| {
+        let rates = |x: [Dual; 4], force: Dual| {
+            let (sin, cos) = (x[1].sin(), x[1].cos());
+            let pull = 0.15 * sin * x[3] * x[3] + force;
+            let mass = 1.0 + 0.3 * sin * sin;
+            let cart = (pull + 0.3 * 9.81 * cos * sin) / mass;
+            [x[2], x[3], cart, -2.0 * (cos * cart + 9.81 * sin)]
+        };
+        let mut x = [Dual::from(0.0); 4];
+        for step in 0..80 {
+            let (h, pair) = (0.025, &u[step / 2..step / 2 + 2]);
+            let at = |share: f64| {
+                let share = 0.5 * ((step % 2) as f64 + share);
+                pair[0] + share * (pair[1] - pair[0])
+            };
+            let moved = |by: f64, k: [Dual; 4]| std::array::from_fn(|i| x[i] + by * k[i]);
+            let a = rates(x, at(0.0));
+            let b = rates(moved(0.5 * h, a), at(0.5));
+            let c = rates(moved(0.5 * h, b), at(0.5));
+            let d = rates(moved(h, c), at(1.0));
+            x = std::array::from_fn(|i| x[i] + h / 6.0 * (a[i] + 2.0 * (b[i] + c[i]) + d[i]));
+        }
+        vec![x[0] - 1.0, x[1] - std::f64::consts::PI, x[2], x[3]]
+    })
+}
