@@ -137,12 +137,13 @@ const BDF: Method = Method::Bdf {
 /// (`benchmarks.rs` runs them through it with reductions).
 #[test]
 fn every_problem_moves_the_same_lowered() {
-    let all: [(&str, bool, &[Method], f64); 22] = [
+    let all: [(&str, bool, &[Method], f64); 23] = [
         ("bump_stop", true, &[Method::Dop853, RADAU], 1e-10),
         ("cart_pole", true, &[Method::Dop853, RADAU], 1e-10),
         ("desk_lamp", true, &[Method::Dop853], 1e-11),
         ("rotor", false, &[Method::Dop853], 1e-11),
         ("fit_pendulum", true, &[Method::Dop853, RADAU], 1e-11),
+        ("jumping_leg", true, &[Method::Dop853], 1e-9),
         ("planetary_gear", true, &[Method::Dop853], 1e-9),
         ("quadruped", false, &[Method::Dop853, RADAU], 1e-11),
         ("straight_line", true, &[Method::Dop853, RADAU], 1e-11),

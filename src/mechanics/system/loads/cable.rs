@@ -7,7 +7,6 @@
 //! l_i are the distances of points that follow each other, with N and V of [`super::normal_law`].
 
 use super::coordinate::Coordinate;
-use super::gaps::Gap;
 use super::normal_law::{self, NormalForce};
 use super::power::{SpringLength, apart, speed_seen};
 use super::pull::{Pulled, Virtual, hold_virtual, moving, pull_rate, with_motions};
@@ -360,22 +359,13 @@ pub(super) fn pull_measure(
     });
 }
 
-/// The gap of a cable: how far it is from being taut.
-pub(super) fn gap<S: Scalar>(
-    (own, load): (&Cable<S>, usize),
-    motions: &[BodyMotion<S>],
-    time: S,
-    felt: f64,
-) -> Gap {
+/// How far a cable is from being taut, δ, and a bound of its rate.
+pub(super) fn gap<S: Scalar>(own: &Cable<S>, motions: &[BodyMotion<S>], time: S) -> [f64; 2] {
     let ground = BodyMotion::ground();
     let running = Running::of(own, motions, &ground, time);
     let speeds = running.parts.iter().map(|(at, _)| speed_seen(at));
-    Gap {
-        load,
-        penetration: running.stretch[0].re(),
-        speed: speeds.sum::<f64>() + running.paid_out.re().abs(),
-        onset: -felt * own.law.width.re(),
-    }
+    let speed = speeds.sum::<f64>() + running.paid_out.re().abs();
+    [running.stretch[0].re(), speed]
 }
 
 /// Whether two points of a cable that follow each other are at one place.

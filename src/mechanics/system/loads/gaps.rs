@@ -55,7 +55,13 @@ pub fn gaps<S: Scalar>(
     });
     for load in of {
         if let LoadKind::Cable(own) = &model.loads[load].kind {
-            out.push(cable::gap((own, load), motions, time.into(), FELT));
+            let [penetration, speed] = cable::gap(own, motions, time.into());
+            out.push(Gap {
+                load,
+                penetration,
+                speed,
+                onset: -FELT * own.law.width.re(),
+            });
         }
     }
 }
