@@ -119,7 +119,10 @@ impl Simulation {
     /// missing: ½ (v⁻ − v⁺)ᵀ M (v⁻ − v⁺) if they rest.
     pub fn jump(&self, problem: &Problem) -> Option<[f64; 2]> {
         problem.last_event()?;
-        let before = self.at.scene.model.bodies.iter().map(|body| {
+        let model = &self.at.scene.model;
+        let seen = (0..model.bodies.len()).filter(|&body| !model.is_internal(body));
+        let before = seen.map(|body| {
+            let body = &model.bodies[body];
             let spin = body.angular_velocity;
             body.mass * body.velocity.norm_squared() + spin.dot(&(body.inertia * spin))
         });

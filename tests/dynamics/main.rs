@@ -11,6 +11,7 @@ mod reference;
 mod allocations;
 mod bushings;
 mod checkpoints;
+mod closing_joints;
 mod conserves;
 mod constraint_derivatives;
 mod contacts;

@@ -14,13 +14,13 @@ fn whole(problem: &Problem) -> Vec<usize> {
     (problem.composition.first..problem.function_names.len()).collect()
 }
 
-fn number(problem: &Problem, name: &str) -> usize {
+pub fn number(problem: &Problem, name: &str) -> usize {
     let mut all = whole(problem).into_iter();
     all.find(|&f| problem.function_names[f] == name)
         .expect("a function")
 }
 
-fn simulated(problem: &Problem) -> Simulated {
+pub fn simulated(problem: &Problem) -> Simulated {
     Simulated::of(problem, &problem.start()).unwrap_or_else(|failure| panic!("{failure}"))
 }
 
@@ -32,7 +32,7 @@ fn phases(at: &Simulated) -> &InCases<Simulated> {
 }
 
 /// The phases with their jumps of kinetic energy.
-fn jumps(at: &Simulated) -> Vec<[f64; 2]> {
+pub fn jumps(at: &Simulated) -> Vec<[f64; 2]> {
     let own = phases(at).each().filter_map(|(case, at)| match at {
         Simulated::Motion(at) => Simulation::jump(at, &case.problem),
         _ => None,
