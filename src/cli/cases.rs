@@ -52,13 +52,21 @@ pub(super) fn simulate(
             tell(&format!("results in {}\n", shown(directory)));
         }
     }
-    let names = problem.function_names.iter().enumerate();
-    let lost = names.filter(|(f, _)| !all.value(*f).is_finite());
-    let lost: Vec<String> = lost.map(|(_, name)| format!("\"{name}\"")).collect();
+    // One origin may spoil several functions, and one of a phase may have no value where none of the whole motion needs it.
+    let first = match all.cases.division {
+        Division::Events => problem.composition.first,
+        Division::Cases => 0,
+    };
+    let mut lost: Vec<String> = (first..problem.function_names.len())
+        .filter(|&f| !all.value(f).is_finite())
+        .map(|f| all.not_finite_value(problem, f))
+        .collect();
+    lost.sort();
+    lost.dedup();
     match lost.is_empty() {
         true => Ok(DONE),
         false => {
-            let what = format!("{}: not finite: {}", problem.name, lost.join(", "));
+            let what = format!("{}: not finite: {}", problem.name, lost.join("; "));
             Err(Failure::numerical(what))
         }
     }

@@ -16,7 +16,8 @@
 
 use super::Problem;
 use crate::adjoint::WeightedEnd;
-use crate::functions::{Function, Scene, turning::turns};
+use crate::functions::turning::{Rotation, turns};
+use crate::functions::{Function, Scene};
 use crate::integrate::Trajectory;
 use crate::math::{Parameters, Scalar, Vec3};
 use crate::model::{JointFrame, JointKind, Model};
@@ -101,24 +102,28 @@ pub(super) fn begin<S: Scalar>(document: &Document, scene: &mut Scene<S>, state:
         resume_drives(document, phase, model);
         return;
     }
-    let angles = scene
-        .functions
-        .iter_mut()
-        .flat_map(Function::first_angles_mut);
-    for first in angles {
-        *first = Some(next().re());
+    let of_functions = scene.functions.iter_mut();
+    for own in of_functions.flat_map(Function::rotations_mut) {
+        own.first = Some(next().re());
     }
     // The quantity of an event is that of a function of all phases.
     if let Some(place) = event_quantity(document)
         && let Some(until) = &mut scene.until
     {
         let known: Vec<Option<f64>> = scene.functions[place]
-            .first_angles_mut()
-            .map(|own| *own)
+            .rotations_mut()
+            .map(|own| own.first)
             .collect();
-        for (own, known) in until.measure.first_angles_mut().zip(known) {
-            *own = known;
+        for (own, known) in until.measure.rotations_mut().zip(known) {
+            own.first = known;
         }
+    }
+    let measured = scene.until.iter_mut().map(|own| &mut own.measure);
+    for own in measured
+        .chain(&mut scene.functions)
+        .flat_map(Function::rotations_mut)
+    {
+        count_from_closing(document, &scene.model, own);
     }
     let time = next();
     scene.model.begin_at(time);
@@ -134,6 +139,21 @@ fn resume_drives<S: Scalar>(document: &Document, phase: usize, model: &mut Model
             && let Some(joint) = document.joints.get_index_of(&drive.joint)
         {
             model.resume_drives(joint);
+        }
+    }
+}
+
+/// Lets the angle of a joint that an event has closed count from there, as those of its loads.
+fn count_from_closing<S: Scalar>(document: &Document, model: &Model<S>, angle: &mut Rotation<S>) {
+    let closed = angle.joint.and_then(|j| {
+        let (name, _) = document.joints.get_index(j)?;
+        Some((j, document.on_since(name, document.phase?)?))
+    });
+    if let Some((j, since)) = closed {
+        let own = &model.joints[j];
+        angle.count_from([&own.frame_a.axes, &own.frame_b.axes]);
+        if document.phase == Some(since) {
+            angle.first = Some(0.0);
         }
     }
 }

@@ -519,6 +519,7 @@ impl<S: Scalar> FunctionBuilder<'_, S> {
                 CountedFrom::Placement => Some(conjugate(&placed)),
             },
             first: turn.map(|turn| turn + before),
+            joint: None,
         }
     }
 
@@ -539,6 +540,7 @@ impl<S: Scalar> FunctionBuilder<'_, S> {
         let (own, other) = self.ends[index.expect("joints are checked")];
         rotation.body = own;
         rotation.relative_to = other;
+        rotation.joint = index;
         rotation
     }
 

@@ -5,7 +5,9 @@
 
 use crate::reference::documents::{problem as parsed, run};
 use crate::reference::gradients::gradients_are_exact;
+use flexbody_mathematics::math::rotation::{from_axis_angle, matrix};
 use flexbody_problem::Problem;
+use nalgebra::Vector3;
 use serde_json::Value;
 
 /// A mass of 2 kg at `at` with a velocity, on a spring to the origin.
@@ -131,5 +133,39 @@ fn other_springs_whose_ends_meet_are_refused() {
             text.contains("ends at the same place") && text.contains("damping"),
             "{text}"
         );
+    }
+}
+
+/// Ends are at one place where they are but for round-off: the end of a body that is turned about an oblique axis, and the same
+/// place in ground axes by another sum.
+#[test]
+fn ends_that_meet_but_for_round_off_are_refused() {
+    let (at, end) = (Vector3::new(0.3, 0.1, -0.2), Vector3::new(0.5, 0.1, 0.07));
+    let turned = from_axis_angle(&Vector3::new(1.0, 2.0, 3.0), 0.7);
+    let place: Vec<f64> = (at + matrix(&turned) * end).iter().copied().collect();
+    for (kind, mut load) in [
+        ("spring", json!({"rest_length": 0.3, "stiffness": 50})),
+        (
+            "stop",
+            json!({"lower": 0.3, "stiffness": 50, "width": 0.01}),
+        ),
+        ("controller", json!({"reference": 0.3, "proportional": 50})),
+    ] {
+        let mut refused = |apart: f64| {
+            let mut other = place.clone();
+            other[0] += apart;
+            load["between"] = json!(["body", "ground"]);
+            load["at"] = json!({"a": end.as_slice(), "b": other});
+            let document = json!({
+                "version": 1, "name": "turned",
+                "bodies": {"body": {"mass": 2, "inertia": {"xx": 1, "yy": 1, "zz": 1},
+                    "place": {"at": at.as_slice(), "turn": {"axis": [1, 2, 3], "angle": 0.7}}}},
+                "loads": {"load": {(kind): load}},
+                "simulation": {"duration": 0.1}
+            });
+            let faults = Problem::parse(&document.to_string(), "turned.json", &[]).err();
+            faults.is_some_and(|faults| faults.to_string().contains("ends at the same place"))
+        };
+        assert!(refused(0.0) && refused(1e-15) && !refused(1e-9), "{kind}");
     }
 }

@@ -28,6 +28,7 @@ pub(super) fn functions(body: usize, gate_body: usize) -> Vec<Function<f64>> {
         axis,
         placed,
         first: None,
+        joint: None,
     };
     let gate = Gate {
         rotation: turned(gate_body, None, Vec3::z(), None),

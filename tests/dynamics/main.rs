@@ -12,6 +12,7 @@ mod allocations;
 mod bushings;
 mod cables;
 mod checkpoints;
+mod closing_joints;
 mod conserves;
 mod constraint_derivatives;
 mod contacts;

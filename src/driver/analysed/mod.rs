@@ -233,12 +233,7 @@ impl Analysed {
             Self::Motion(at) => not_finite::value(problem, at, f, value),
             Self::Cases(at) => at.not_finite_value(problem, f, value),
             Self::Elsewhere(at) => at.not_finite_value(f),
-            Self::Statics(at) if problem.composition.gives(f) => {
-                composed::not_finite(problem, f, value, &|g| at.function(g).value)
-            }
-            Self::Statics(_) => {
-                format!("the function \"{}\" is {value}", problem.function_names[f])
-            }
+            Self::Statics(at) => not_finite_at_rest(problem, at, f, value),
         }
     }
 
@@ -275,6 +270,14 @@ impl Analysed {
                 not_finite::variable(problem, i)
             ),
         }
+    }
+}
+
+/// The origin of a value of structures that is not finite.
+fn not_finite_at_rest(problem: &Problem, at: &StaticDesign, f: usize, value: f64) -> String {
+    match problem.composition.gives(f) {
+        true => composed::not_finite(problem, f, value, &|g| at.function(g).value),
+        false => format!("the function \"{}\" is {value}", problem.function_names[f]),
     }
 }
 
@@ -362,6 +365,16 @@ impl Simulated {
             Self::Motion(simulation) => simulation.at.function(f).value,
             Self::Statics(at) => at.function(f).value,
             Self::Cases(at) => at.value(f),
+        }
+    }
+
+    /// The origin of a value that is not finite.
+    pub fn not_finite_value(&self, problem: &Problem, f: usize) -> String {
+        let value = self.value(f);
+        match self {
+            Self::Motion(simulation) => not_finite::value(problem, &simulation.at, f, value),
+            Self::Statics(at) => not_finite_at_rest(problem, at, f, value),
+            Self::Cases(at) => at.not_finite_value(problem, f),
         }
     }
 

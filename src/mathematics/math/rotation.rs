@@ -110,6 +110,32 @@ pub fn from_axis_angle<S: Scalar>(axis: &Vec3<S>, angle: S) -> Quat<S> {
     [c, e.x, e.y, e.z]
 }
 
+/// Euler parameters of the rotation R: the products 4 p_k p_j are sums of its entries, and the largest p_k is positive.
+pub fn of_matrix<S: Scalar>(r: &Mat3<S>) -> Quat<S> {
+    let trace = r[(0, 0)] + r[(1, 1)] + r[(2, 2)];
+    let square = |k: usize| match k {
+        0 => trace + 1.0,
+        _ => r[(k - 1, k - 1)] * 2.0 - trace + 1.0,
+    };
+    let largest = |a: usize, b: usize| {
+        if square(b).re() > square(a).re() {
+            b
+        } else {
+            a
+        }
+    };
+    let k = (1..4).fold(0, largest);
+    let product = |j: usize| match (k.min(j), k.max(j)) {
+        (a, b) if a == b => square(a),
+        (0, 1) => r[(2, 1)] - r[(1, 2)],
+        (0, 2) => r[(0, 2)] - r[(2, 0)],
+        (0, 3) => r[(1, 0)] - r[(0, 1)],
+        (a, b) => r[(a - 1, b - 1)] + r[(b - 1, a - 1)],
+    };
+    let scale = S::one() / (square(k).sqrt() * 2.0);
+    std::array::from_fn(|j| product(j) * scale)
+}
+
 /// Euler parameters of the rotation `second` after `first`: R = R(second) R(first).
 pub fn compose<S: Scalar>(second: &Quat<S>, first: &Quat<S>) -> Quat<S> {
     let (a, b) = (vector(second), vector(first));

@@ -3,6 +3,7 @@
 use super::instant::{Gate, Instant, Projectile};
 use super::quantity::Quantity;
 use super::series::Series;
+use super::turning::Rotation;
 use super::window::{Edge, Window};
 use crate::math::soft_max::Bound;
 use crate::math::{Scalar, Vec3, parameters};
@@ -231,10 +232,10 @@ impl<S: Scalar> Function<S> {
         all
     }
 
-    /// The angles at t = 0 of the rotations of these quantities, by which whole turns count.
-    pub fn first_angles_mut(&mut self) -> impl Iterator<Item = &mut Option<f64>> {
+    /// The rotations of these quantities whose whole turns count.
+    pub fn rotations_mut(&mut self) -> impl Iterator<Item = &mut Rotation<S>> {
         let all = self.instants_mut().into_iter();
-        all.filter_map(|own| Some(&mut own.watched_rotation_mut()?.first))
+        all.filter_map(Instant::watched_rotation_mut)
     }
 
     /// One of them, by its number.

@@ -13,7 +13,7 @@
 
 use crate::integrate::Trajectory;
 use crate::math::rotation::{self, Quat, compose, conjugate};
-use crate::math::{Parameters, Scalar, Vec3, parameters};
+use crate::math::{Mat3, Parameters, Scalar, Vec3, parameters};
 use crate::system::bodies::{add6, positions_of};
 use crate::system::{BodyMotion, Numbering};
 use std::f64::consts::{PI, TAU};
@@ -32,6 +32,8 @@ pub struct Rotation<S> {
     /// The angle at t = 0 that the start of a joint or its drive gives, up to less than half a turn \[rad\]; `None` if it
     /// is in (−2π, 2π].
     pub first: Option<f64>,
+    /// The joint of the file whose angle it is.
+    pub joint: Option<usize>,
 }
 
 /// Derivatives of an angle in the tangent positions of both bodies and in its parameters.
@@ -42,9 +44,16 @@ struct ByRotation {
     placed: Quat<f64>,
 }
 
-parameters!(struct Rotation { body, relative_to, first; axis, placed });
+parameters!(struct Rotation { body, relative_to, first, joint; axis, placed });
 
 impl<S: Scalar> Rotation<S> {
+    /// Makes it the angle of frame A of a joint relative to frame B, zero where their axes agree: R_A F_A = R_B F_B.
+    pub fn count_from(&mut self, [a, b]: [&[Vec3<S>; 3]; 2]) {
+        self.axis = b[2];
+        let c = Mat3::from_columns(a) * Mat3::from_columns(b).transpose();
+        self.placed = Some(rotation::of_matrix(&c));
+    }
+
     /// r at the positions `q`.
     fn turned(&self, numbering: &Numbering, q: &[S]) -> Quat<S> {
         let p = orientation(numbering, q, self.body);

@@ -160,13 +160,6 @@ impl<S> Controller<S> {
             .chain(self.lag.as_ref().map(|own| own.state))
     }
 
-    /// The joints whose turns are counted, with their counters.
-    pub fn counters(&self) -> impl Iterator<Item = (usize, usize)> {
-        self.feedback
-            .iter()
-            .filter_map(|own| own.coordinate.counted())
-    }
-
     /// Places of the counters of the joints whose rotation is measured.
     pub fn rotations(&mut self) -> impl Iterator<Item = &mut Option<usize>> {
         self.feedback

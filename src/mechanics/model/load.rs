@@ -299,6 +299,17 @@ impl<S> LoadKind<S> {
         both.into_iter().flatten().collect()
     }
 
+    /// The joints whose turns are counted for it, with their counters.
+    pub fn counters(&self) -> impl Iterator<Item = (usize, usize)> {
+        let feedback = match self {
+            LoadKind::Controller(own) => &own.feedback[..],
+            _ => &[],
+        };
+        let measured = feedback.iter().filter_map(|own| own.coordinate.counted());
+        let own = self.joint().zip(self.counter());
+        own.into_iter().chain(measured)
+    }
+
     /// The body that counts the turns of its joint, if one does. A controller may have several.
     pub fn counter(&self) -> Option<usize> {
         match self {

@@ -151,11 +151,8 @@ impl<S: Scalar> Model<S> {
 
     /// Whether a body counts the turns of a joint for a load.
     pub fn is_counter(&self, body: usize) -> bool {
-        let counts = |load: &Load<S>| match &load.kind {
-            LoadKind::Controller(own) => own.counters().any(|(_, counter)| counter == body),
-            kind => kind.counter() == Some(body),
-        };
-        self.loads.iter().any(counts)
+        let mut all = self.loads.iter().flat_map(|load| load.kind.counters());
+        all.any(|(_, counter)| counter == body)
     }
 
     /// Gives a load bodies that count the turns of its joints, whose angles start so: one of a torsion spring or a stop; of a

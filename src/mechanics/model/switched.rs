@@ -10,19 +10,29 @@
 //! and a rod keeps the distance of its points. So no body moves when a joint closes. A drive that comes on goes on from
 //! where its joint is: its course is shifted by a constant.
 
+use super::controller::Coordinate;
 use super::{Drive, Joint, JointKind, LoadKind, Model, TimeFunction};
 use crate::math::{Mat3, Scalar, Vec3, rotation};
 
 impl<S: Scalar> Model<S> {
-    /// Opens a joint. Its drives and the loads that act through it go with it.
+    /// Opens a joint. Its drives, the loads that act through it, and the feedback by it go with it: its coordinates depend on
+    /// the choice of its frames once its bodies have turned apart.
     pub fn open(&mut self, joint: usize) {
         let own = &mut self.joints[joint];
         own.kind = JointKind::Free;
         own.drives.clear();
-        let through = self.loads.iter_mut();
-        through
-            .filter(|load| load.kind.joint() == Some(joint))
-            .for_each(|load| load.kind.switch_off());
+        for load in &mut self.loads {
+            if load.kind.joint() == Some(joint) {
+                load.kind.switch_off();
+            } else if let LoadKind::Controller(own) = &mut load.kind {
+                for own in &mut own.feedback {
+                    if matches!(own.coordinate, Coordinate::Joint { joint: by, .. } if by == joint)
+                    {
+                        (own.proportional, own.derivative) = (S::zero(), S::zero());
+                    }
+                }
+            }
+        }
     }
 
     /// Lets the functions of time of loads and drives count from `start` \[s\]; see [`TimeFunction::since`].
@@ -69,7 +79,7 @@ impl<S: Scalar> Model<S> {
         }
     }
 
-    /// Closes a joint at the poses of its bodies.
+    /// Closes a joint at the poses of its bodies. Its coordinates are zero there, and its loads count turns from there.
     pub fn close(&mut self, joint: usize) {
         let pose = |body: Option<usize>| match body {
             Some(body) => {
@@ -89,6 +99,11 @@ impl<S: Scalar> Model<S> {
         }
         own.frame_b.point = turned_b.tr_mul(&(point - r_b));
         own.frame_b.axes = own.frame_a.axes.map(|e| turned_b.tr_mul(&(turned_a * e)));
+        for load in &self.loads {
+            for (_, counter) in load.kind.counters().filter(|own| own.0 == joint) {
+                self.bodies[counter].position.x = S::zero();
+            }
+        }
     }
 }
 

@@ -14,7 +14,7 @@
 use super::numbering::Numbering;
 use crate::math::rotation::{Quat, compose, conjugate, twist};
 use crate::math::{Scalar, Vec3};
-use crate::model::{LoadKind, Model};
+use crate::model::Model;
 use std::f64::consts::TAU;
 
 /// The counted angle \[rad\] of a joint whose bodies A and B have these Euler parameters, nearest to `known`; `counter` is the
@@ -41,7 +41,7 @@ pub(super) fn counted<S: Scalar>(
 /// Counts the turns at the end of a step in its positions.
 pub fn count<S: Scalar>(model: &Model<S>, numbering: &Numbering, q: &mut [S]) {
     let ground = [S::one(), S::zero(), S::zero(), S::zero()];
-    let mut count = |(joint, counter): (usize, usize)| {
+    let count = |(joint, counter): (usize, usize)| {
         let of = |body: usize| {
             let p = &q[numbering.position(body) + 3..];
             [p[0], p[1], p[2], p[3]]
@@ -52,13 +52,6 @@ pub fn count<S: Scalar>(model: &Model<S>, numbering: &Numbering, q: &mut [S]) {
         let angle = counted(model, (joint, counter), ends, q[known].re());
         q[known] = S::from(angle);
     };
-    for load in &model.loads {
-        match &load.kind {
-            LoadKind::Controller(own) => own.counters().for_each(&mut count),
-            kind => {
-                let own = kind.joint().zip(kind.counter());
-                own.into_iter().for_each(&mut count);
-            }
-        }
-    }
+    let counters = model.loads.iter().flat_map(|load| load.kind.counters());
+    counters.for_each(count);
 }

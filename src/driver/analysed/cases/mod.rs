@@ -136,6 +136,23 @@ impl<T> InCases<T> {
         Ok(which.iter().map(one).collect())
     }
 
+    /// The origin of a value of function `f` that is not finite, from `origin` of those of the cases.
+    fn lost(
+        &self,
+        (problem, value): (&Problem, f64),
+        f: usize,
+        of: impl Fn(&T, usize) -> f64,
+        origin: impl Fn(&T, &Problem, usize) -> Option<String>,
+    ) -> String {
+        let needed = self.composition.of_scene(&[f]).into_owned();
+        let lost = needed.iter().find_map(|&k| {
+            let (case, at, own) = self.place(k)?;
+            Some(case.tell(origin(at, &case.problem, own)?))
+        });
+        let value_of = |k: usize| self.at_place(k, &of);
+        lost.unwrap_or_else(|| composed::not_finite(problem, f, value, &value_of))
+    }
+
     /// The functions of the cases on which function `f` depends here, by `value`.
     fn moving(&self, f: usize, value: impl Fn(&T, usize) -> f64) -> Vec<usize> {
         if !self.composition.gives(f) {
@@ -297,16 +314,11 @@ impl InCases<Analysed> {
 
     /// The origin of a value that is not finite.
     pub fn not_finite_value(&self, problem: &Problem, f: usize, value: f64) -> String {
-        let needed = self.composition.of_scene(&[f]).into_owned();
-        let lost = needed.iter().find_map(|&k| {
-            let (case, at, own) = self.place(k)?;
-            let value = at.value(own);
-            (!value.is_finite()).then(|| {
-                let why = at.not_finite_value(&case.problem, own, value);
-                case.tell(why)
-            })
-        });
-        lost.unwrap_or_else(|| composed::not_finite(problem, f, value, &|k| self.value(k)))
+        let origin = |at: &Analysed, own: &Problem, f: usize| {
+            let value = at.value(f);
+            (!value.is_finite()).then(|| at.not_finite_value(own, f, value))
+        };
+        self.lost((problem, value), f, Analysed::value, origin)
     }
 
     /// Why gradients of the functions `which` are refused, if they are.
@@ -365,6 +377,14 @@ impl InCases<Simulated> {
     /// The value of a function.
     pub fn value(&self, f: usize) -> f64 {
         self.value_by(f, Simulated::value)
+    }
+
+    /// The origin of a value that is not finite.
+    pub fn not_finite_value(&self, problem: &Problem, f: usize) -> String {
+        let origin = |at: &Simulated, own: &Problem, f: usize| {
+            (!at.value(f).is_finite()).then(|| at.not_finite_value(own, f))
+        };
+        self.lost((problem, self.value(f)), f, Simulated::value, origin)
     }
 
     /// The largest value of the quantity that a function of a case aggregates.

@@ -334,9 +334,12 @@ pub(in crate::analysed) fn check(
             in_use: in_use[f][i].value,
         }
     };
-    let pairs = which
+    // A function may have no value in a phase that no function of the whole motion needs.
+    let first = problem.composition.first;
+    let told = which
         .iter()
-        .flat_map(|&f| (0..x.len()).map(move |i| (f, i)));
+        .filter(|&&f| f >= first || at.value(f).is_finite());
+    let pairs = told.flat_map(|&f| (0..x.len()).map(move |i| (f, i)));
     Ok(pairs.map(|(f, i)| one(f, i)).collect())
 }
 

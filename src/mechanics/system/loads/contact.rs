@@ -142,7 +142,8 @@ impl<S: Scalar> State<S> {
 /// Whether the centre of A is where a curved surface has no normal: in the centre of a sphere or on the axis of a capsule.
 pub(super) fn meets(contact: &Contact<f64>, at: &Acting<f64>) -> bool {
     let curved = !matches!(contact.surface, Surface::Plane { .. });
-    curved && state(contact, at).distance <= f64::EPSILON * contact.radius.max(at.a.point().norm())
+    curved
+        && state(contact, at).distance <= super::ROUND_OFF * contact.radius.max(at.a.point().norm())
 }
 
 /// δ.

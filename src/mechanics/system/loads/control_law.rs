@@ -113,6 +113,12 @@ fn acting<'a, S: Scalar>(
 }
 
 impl<'a, S: Scalar> Running<'a, S> {
+    /// What acts on its distances.
+    pub fn distances(&self) -> impl Iterator<Item = &Acting<'a, S>> {
+        let all = self.coordinates.iter();
+        all.filter_map(|(own, at)| matches!(own, Coordinate::Distance).then_some(at))
+    }
+
     pub fn of(here: &InMotion<'a, S>, ground: &'a BodyMotion<S>, own: &'a Controller<S>) -> Self {
         let coordinates: Vec<(Coordinate, Acting<'a, S>)> = (own.feedback.iter())
             .map(|own| acting(here, ground, &own.coordinate))

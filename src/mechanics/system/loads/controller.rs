@@ -13,7 +13,7 @@ use crate::system::bodies::{BodyMotion, add6, velocities_of};
 use crate::system::in_motion::InMotion;
 
 /// Calls `visit` for every controller.
-fn for_each<S: Scalar>(here: &InMotion<S>, mut visit: impl FnMut(usize, &Running<S>)) {
+pub(super) fn for_each<S: Scalar>(here: &InMotion<S>, mut visit: impl FnMut(usize, &Running<S>)) {
     let mut ground = None;
     for i in 0..here.model.loads.len() {
         if let Some(own) = of(here, i) {

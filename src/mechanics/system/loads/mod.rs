@@ -335,27 +335,51 @@ fn give_to_states(
     }
 }
 
-/// The first spring, stop, contact or part of a cable of length zero in the placement whose ends may not meet, if any.
+/// Places whose distance is below this part of their coordinates are one place.
+const ROUND_OFF: f64 = 1e-12;
+
+/// Whether the points of a load are at one place, but for round-off.
+fn at_one_place(at: &Acting<f64>) -> bool {
+    let size = |side: &JointSide<f64>| side.motion.position.norm() + side.frame.point.norm();
+    (at.a.point() - at.b.point()).norm() <= ROUND_OFF * (size(&at.a) + size(&at.b))
+}
+
+/// The first spring, stop, contact, controller or part of a cable of length zero in the placement whose ends may not meet, if
+/// any.
 pub fn without_length(model: &Model<f64>) -> Option<&str> {
     let (q, v) = guess(model);
-    let mut motions = Vec::new();
-    BodyMotion::all(&Numbering::new(model), &q, &v, &mut motions);
-    let mut found = None;
+    let (numbering, mut motions) = (Numbering::new(model), Vec::new());
+    BodyMotion::all(&numbering, &q, &v, &mut motions);
+    let mut found: Option<usize> = None;
+    let mut meet = |i: usize| found = Some(found.map_or(i, |first| first.min(i)));
     for_each_load(model, &motions, |i, kind, at| {
         let meets = match kind {
-            LoadKind::DistanceStop { .. } => power::apart(at).length == 0.0,
+            LoadKind::DistanceStop { .. } => at_one_place(at),
             LoadKind::Contact(own) => contact::meets(own, at),
-            _ => spring::of(kind).is_some_and(|own| own.is_without_direction(at)),
+            _ => spring::of(kind).is_some_and(|own| own.has_direction()) && at_one_place(at),
         };
         if meets {
-            found = found.or(Some(i));
+            meet(i);
         }
     });
-    let cables = model
-        .loads
-        .iter()
-        .position(|load| matches!(&load.kind, LoadKind::Cable(own) if cable::meets(own, &motions)));
-    found.or(cables).map(|i| model.loads[i].name.as_str())
+    let here = InMotion {
+        model,
+        numbering: &numbering,
+        motions: &motions,
+        time: 0.0,
+    };
+    controller::for_each(&here, |i, own| {
+        let mut distances = own.distances();
+        if distances.any(at_one_place) {
+            meet(i);
+        }
+    });
+    for (i, load) in model.loads.iter().enumerate() {
+        if matches!(&load.kind, LoadKind::Cable(own) if cable::meets(own, &motions)) {
+            meet(i);
+        }
+    }
+    found.map(|i| model.loads[i].name.as_str())
 }
 
 /// Potential energy of springs, bushings, stops, contacts and cables \[J\] at `time`.

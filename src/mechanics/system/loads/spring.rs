@@ -84,10 +84,9 @@ impl<S: Scalar> Spring<'_, S> {
         smooth && self.tables.iter().all(Option::is_none)
     }
 
-    /// Whether its ends meet, and may not.
-    pub(super) fn is_without_direction(&self, at: &Acting<S>) -> bool {
-        let between_points = matches!(self.coordinate, Coordinate::Distance);
-        between_points && !self.may_meet() && apart(at).length == S::zero()
+    /// Whether it needs the direction from one end to the other, which may not meet then.
+    pub(super) fn has_direction(&self) -> bool {
+        matches!(self.coordinate, Coordinate::Distance) && !self.may_meet()
     }
 
     /// The length of a spring between points. Where ends meet that may, it has no direction, and the rate of its length is
