@@ -143,7 +143,7 @@ fn every_problem_moves_the_same_lowered() {
         ("desk_lamp", true, &[Method::Dop853], 1e-11),
         ("rotor", false, &[Method::Dop853], 1e-11),
         ("fit_pendulum", true, &[Method::Dop853, RADAU], 1e-11),
-        ("jumping_leg", true, &[Method::Dop853], 1e-9),
+        ("jumping_leg", true, &[Method::Dop853, RADAU], 1e-10),
         ("planetary_gear", true, &[Method::Dop853], 1e-9),
         ("quadruped", false, &[Method::Dop853, RADAU], 1e-11),
         ("straight_line", true, &[Method::Dop853, RADAU], 1e-11),
