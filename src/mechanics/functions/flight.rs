@@ -390,6 +390,7 @@ mod tests {
             axis: Vec3::z(),
             placed: None,
             first: None,
+            joint: None,
         };
         for open in [GateSide::Above, GateSide::Below] {
             let gate = Gate {
