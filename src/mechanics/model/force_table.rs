@@ -188,6 +188,7 @@ impl ForceTable<f64> {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::math::Parameters;
     use crate::math::scalar::{COMPLEX_STEP, Complex64};
 
     const ALL: [Interpolation; 3] = [
