@@ -17,7 +17,7 @@ use super::not_finite::{body, variable};
 use super::optimise::Optimisation;
 use super::statics::{self, StaticDesign, StaticsFailure};
 use crate::functions::Function;
-use crate::integrate::{IntegrationFailure, Settings};
+use crate::integrate::{IntegrationFailure, Settings, StepSolver};
 use crate::math::Complex64;
 use crate::math::scalar::COMPLEX_STEP;
 use crate::problem::{Division, Problem};
@@ -210,8 +210,8 @@ fn certified(
         let name = &problem.function_names[f];
         let mut judged = pair(f, &gradients);
         if !judged.passes(tolerance) && judged.is_finite() {
-            // The motion of the complex run differs by round-off, which a sensitive motion
-            // magnifies.
+            // The motion of the complex run differs by round-off, which a sensitive motion magnifies, and by where
+            // Newton's method has ended: that of the complex run goes on to round-off.
             if same.is_none() {
                 let of_complex = at.with_run(at.scene.clone(), complex.run.clone());
                 same = Some(of_complex.derivatives(problem, &which)?.0);
@@ -230,9 +230,12 @@ fn certified(
             };
             if on_same.passes(tolerance) {
                 let noise = judged.relative();
+                let what = match at.run.solver.newton > StepSolver::default().newton {
+                    true => "where Newton's method ends",
+                    false => "round-off of the motion",
+                };
                 found.notes.push(format!(
-                    "round-off of the motion moves the derivative of \"{name}\" by {noise:.1e} of its \
-                     gradient"
+                    "{what} moves the derivative of \"{name}\" by {noise:.1e} of its gradient"
                 ));
                 judged = on_same;
             }

@@ -8,7 +8,8 @@ use crate::adjoint::{self, Target, WeightedHistories};
 use crate::functions::rest::{passes_rest, vanishing};
 use crate::functions::{Function, Reduction, Scene, evaluate, smoothed};
 use crate::integrate::{
-    IntegrationFailure, Samples, Settings, Trajectory, WorkCounts, irregular, simulate_by,
+    IntegrationFailure, Samples, Settings, StepSolver, Trajectory, WorkCounts, irregular,
+    simulate_by,
 };
 use crate::math::scalar::COMPLEX_STEP;
 use crate::math::soft_max::Smoothed;
@@ -140,7 +141,7 @@ impl Evaluated {
                 false => Samples::Uniform(self.run.last()),
             },
             limits: whole.simulation.limits.clone(),
-            solver: whole.simulation.solver,
+            solver: StepSolver::suited(whole.simulation.solver, &whole.simulation.spacing),
             derivatives: !whole.variables.is_empty(),
             ..Settings::steps(self.run.method, 1)
         };

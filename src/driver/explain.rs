@@ -104,7 +104,7 @@ fn linear(at: &Evaluated) -> Option<LinearUse> {
         return None;
     }
     let cost = factor_cost(model, run)?;
-    let (solver, reason) = match (run.solver, run.method) {
+    let (solver, reason) = match (run.solver.linear, run.method) {
         (LinearSolver::Krylov, _) => (
             "Krylov with kept factors",
             format!("as the problem says; new factors count as {PRODUCTS_OF_FACTORS} products"),

@@ -11,7 +11,7 @@ use crate::functions::resolution::{Resolution, resolution};
 use crate::functions::{Function, Reduction, Scene};
 use crate::integrate::{
     Chosen, Grid, IntegrationFailure, Limits, LinearSolver, Method, Samples, Settings, Spacing,
-    Trajectory, choice, has_kinks, simulate, simulate_by,
+    StepSolver, Trajectory, choice, has_kinks, simulate, simulate_by,
 };
 use crate::problem::{Case, Division, Problem};
 use serde::{Deserialize, Serialize};
@@ -424,7 +424,7 @@ impl Integration {
     pub(super) fn wanted(&self) -> Settings {
         Settings {
             method: self.method.unwrap_or(Method::Dop853),
-            solver: self.solver,
+            solver: StepSolver::suited(self.solver, &self.spacing),
             spacing: self.spacing.clone(),
             samples: self.samples,
             limits: self.limits.clone(),

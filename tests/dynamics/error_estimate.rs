@@ -9,7 +9,7 @@ use flexbody_driver::Evaluated;
 use flexbody_driver::accuracy::{Judged, reach};
 use flexbody_driver::error::estimate;
 use flexbody_mechanics::integrate::{
-    LinearSolver, MEMORY, Method, Samples, Settings, Spacing, Start, simulate,
+    MEMORY, Method, Samples, Settings, Spacing, Start, StepSolver, simulate,
 };
 use flexbody_problem::Problem;
 use serde_json::Value;
@@ -66,7 +66,7 @@ fn exact(problem: &Problem) -> Vec<Vec<Exact>> {
     let (model, duration) = (&scene.model, scene.duration);
     let settings = |spacing, samples| Settings {
         method: Method::Dop853,
-        solver: LinearSolver::Direct,
+        solver: StepSolver::default(),
         spacing,
         samples: Samples::Uniform(samples),
         limits: Default::default(),

@@ -7,7 +7,7 @@ use flexbody::Analysis;
 use flexbody_mathematics::math::{Vec3, rotation};
 use flexbody_mechanics::adjoint::gradients;
 use flexbody_mechanics::integrate::{
-    LinearSolver, MEMORY, Method, Settings, Start, WorkCounts, simulate,
+    LinearSolver, MEMORY, Method, Settings, Start, StepSolver, WorkCounts, simulate,
 };
 use serde_json::Value;
 use std::f64::consts::FRAC_PI_2;
@@ -203,7 +203,10 @@ fn checkpoints_give_the_same_bits_by(solver: LinearSolver, thick: bool) {
     };
     let of = |memory: usize| {
         let settings = Settings {
-            solver,
+            solver: StepSolver {
+                linear: solver,
+                ..StepSolver::default()
+            },
             memory,
             ..Settings::steps(method, 60)
         };

@@ -8,7 +8,7 @@
 use crate::reference;
 
 use flexbody_mechanics::integrate::{
-    LinearSolver, Method, Samples, Settings, Spacing, Start, Trajectory, simulate,
+    Method, Samples, Settings, Spacing, Start, StepSolver, Trajectory, simulate,
 };
 use flexbody_mechanics::model::Model;
 use flexbody_mechanics::system::observe::observe;
@@ -233,7 +233,7 @@ fn steps_follow_the_tolerance_at_the_work_that_was_counted() {
         let (model, instants) = reference::load(name);
         let settings = Settings {
             method,
-            solver: LinearSolver::Direct,
+            solver: StepSolver::default(),
             spacing: Spacing::Tolerance(tolerance),
             samples: Samples::Uniform(1),
             limits: Default::default(),
@@ -266,7 +266,7 @@ fn energy_of_a_chaotic_motion() {
     let (model, _) = reference::load("triple_pendulum");
     let settings = Settings {
         method: Method::Dop853,
-        solver: LinearSolver::Direct,
+        solver: StepSolver::default(),
         spacing: Spacing::Tolerance(1e-9),
         samples: Samples::StepEnds,
         limits: Default::default(),

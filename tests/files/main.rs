@@ -46,6 +46,7 @@ mod machines_at_rest;
 mod modal;
 mod modal_faults;
 mod modal_scenes;
+mod newton_tolerance;
 mod optimal_control;
 mod orientations;
 mod parts;

@@ -5,7 +5,8 @@ use super::exact::{Reference, distance, gradient_error, positions};
 use crate::adjoint;
 use crate::functions::Scene;
 use crate::integrate::{
-    IntegrationFailure, Limits, Method, Samples, Settings, Spacing, Trajectory, simulate,
+    IntegrationFailure, Limits, Method, Samples, Settings, Spacing, StepSolver, Trajectory,
+    simulate,
 };
 use crate::integration::{Integration, looks_at_the_whole};
 use crate::memory;
@@ -76,7 +77,7 @@ impl<'a> Bench<'a> {
     ) -> Result<PrecisionRow, IntegrationFailure> {
         let settings = |samples, memory| Settings {
             method,
-            solver: self.problem.simulation.solver,
+            solver: StepSolver::suited(self.problem.simulation.solver, spacing),
             spacing: spacing.clone(),
             samples,
             limits: self.limits(),

@@ -5,7 +5,7 @@ use super::bench::Bench;
 use super::exact::{Reference, distance, gradient_error, positions};
 use crate::integrate::choice::{NON_STIFF, STIFF};
 use crate::integrate::{
-    IntegrationFailure, LinearSolver, Method, Samples, Settings, Spacing, simulate,
+    IntegrationFailure, Method, Samples, Settings, Spacing, StepSolver, simulate,
 };
 
 /// Tolerance of the explicit reference.
@@ -98,7 +98,7 @@ fn candidate(
 ) -> Result<Candidate, IntegrationFailure> {
     let settings = Settings {
         method,
-        solver: LinearSolver::Direct,
+        solver: StepSolver::default(),
         spacing: Spacing::Tolerance(tolerance),
         samples: match bench.sums() {
             true => Samples::Uniform(SAMPLES),

@@ -32,7 +32,7 @@ pub use limits::{Limits, Progress};
 pub use multipliers::Multipliers;
 pub use quadrature::Samples;
 pub use settings::MEMORY;
-pub use settings::{LinearSolver, Method, Settings, Spacing, Start};
+pub use settings::{LinearSolver, Method, Settings, Spacing, Start, StepSolver};
 pub use singular::irregular;
 pub use stops::{has_kinks, stage_time};
 pub use trajectory::{Tape, Trajectory};

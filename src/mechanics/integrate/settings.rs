@@ -44,6 +44,47 @@ pub enum LinearSolver {
     Krylov,
 }
 
+/// How the equations of implicit steps are solved.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct StepSolver {
+    /// Solver of linear systems.
+    pub linear: LinearSolver,
+    /// Newton's method ends at this error of a step, relative to its largest increments of position, rotation, velocity
+    /// and angular velocity. Runs with an infinitesimal part end at round-off, whatever it is.
+    pub newton: f64,
+}
+
+/// Error at which Newton's method ends, if it has to be that of round-off.
+pub const TO_ROUND_OFF: f64 = 1e-13;
+/// The same error of steps that follow a tolerance, relative to it, and the largest one. Gradients of flexible scenes are
+/// off by up to three hundred times it, so that they keep eight digits (`tests/files/newton_tolerance.rs`).
+const OF_TOLERANCE: f64 = 1e-3;
+const LARGEST: f64 = 3e-11;
+
+impl Default for StepSolver {
+    /// Direct, to round-off.
+    fn default() -> Self {
+        Self {
+            linear: LinearSolver::Direct,
+            newton: TO_ROUND_OFF,
+        }
+    }
+}
+
+impl StepSolver {
+    /// For the steps of a simulation or an optimisation: Newton's method is as accurate as their tolerance asks. Equal
+    /// steps have none.
+    pub fn suited(linear: LinearSolver, spacing: &Spacing) -> Self {
+        let newton = match spacing {
+            Spacing::Tolerance(tolerance) => {
+                (OF_TOLERANCE * tolerance).clamp(TO_ROUND_OFF, LARGEST)
+            }
+            Spacing::Steps(_) | Spacing::Frozen(_) => TO_ROUND_OFF,
+        };
+        Self { linear, newton }
+    }
+}
+
 /// Method of the first m − 1 steps of a multistep formula of order m.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Start {
@@ -166,8 +207,8 @@ pub const MEMORY: usize = 1 << 28;
 pub struct Settings {
     /// Method.
     pub method: Method,
-    /// Solver of linear systems.
-    pub solver: LinearSolver,
+    /// Solver of the equations of implicit steps.
+    pub solver: StepSolver,
     /// Ends of the steps.
     pub spacing: Spacing,
     /// Samples of the motion.
@@ -201,7 +242,7 @@ impl Settings {
     pub fn steps(method: Method, steps: usize) -> Self {
         Self {
             method,
-            solver: LinearSolver::Direct,
+            solver: StepSolver::default(),
             spacing: Spacing::Steps(steps),
             samples: Samples::StepEnds,
             limits: Limits::default(),

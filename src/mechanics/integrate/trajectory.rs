@@ -5,7 +5,7 @@ use super::limits::Limits;
 use super::quadrature::{Due, Step, weights};
 use super::rows::real;
 use super::schedule::Schedule;
-use super::settings::{LinearSolver, Method};
+use super::settings::{Method, StepSolver};
 use super::work::{Measured, WorkCounts};
 use super::{explicit, implicit};
 use crate::math::{Complex64, Scalar};
@@ -19,8 +19,8 @@ pub struct Trajectory<S: Scalar> {
     pub numbering: Numbering,
     /// The integration method.
     pub method: Method,
-    /// Solver of its linear systems.
-    pub solver: LinearSolver,
+    /// Solver of the equations of implicit steps.
+    pub solver: StepSolver,
     /// Duration T \[s\].
     pub duration: S,
     /// Ends of the steps.
@@ -81,7 +81,7 @@ impl<S: Scalar> Trajectory<S> {
     ) -> Self {
         Self {
             method,
-            solver: LinearSolver::Direct,
+            solver: StepSolver::default(),
             duration,
             grid: Grid::growing(),
             instants: vec![0.0],

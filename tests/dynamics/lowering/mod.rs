@@ -13,7 +13,7 @@ mod welds;
 
 use flexbody_driver::Evaluated;
 use flexbody_mechanics::integrate::{
-    LinearSolver, MEMORY, Method, Samples, Settings, Spacing, simulate,
+    MEMORY, Method, Samples, Settings, Spacing, StepSolver, simulate,
 };
 use flexbody_mechanics::lower::ViolatedCondition;
 use flexbody_mechanics::system::flexible::has_shells;
@@ -76,7 +76,7 @@ fn obstacle(problem: &Problem) -> ViolatedCondition {
 fn settings(method: Method, spacing: Spacing) -> Settings {
     Settings {
         method,
-        solver: LinearSolver::Direct,
+        solver: StepSolver::default(),
         spacing,
         samples: Samples::Uniform(50),
         limits: Default::default(),

@@ -94,8 +94,10 @@ pub(super) fn gradients(
                     before.read(run, replay.block(k - 1)?, k - 1);
                 }
                 let ahead = ahead.as_ref().map(|formula| (formula, &before));
-                one.get_or_insert_with(|| formula::BackwardStage::new(model, numbering, run.solver))
-                    .step((&formula, &step), ahead, &mut sweeps, &mut counts)
+                one.get_or_insert_with(|| {
+                    formula::BackwardStage::new(model, numbering, run.solver.linear)
+                })
+                .step((&formula, &step), ahead, &mut sweeps, &mut counts)
             }
             None => {
                 // Matrices of shells are large, and the first steps of a formula are the last ones here.

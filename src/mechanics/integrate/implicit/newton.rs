@@ -9,7 +9,7 @@ use super::krylov::{self, Kept, Krylov};
 use super::scales::SceneScale;
 use super::turned::Turned;
 use crate::integrate::failure::IntegrationFailure;
-use crate::integrate::settings::LinearSolver;
+use crate::integrate::settings::{LinearSolver, StepSolver, TO_ROUND_OFF};
 use crate::integrate::work::WorkCounts;
 use crate::linalg::{Pivots, SolveScalar, SparseLu, SparseMatrix};
 use crate::math::Scalar;
@@ -17,9 +17,6 @@ use crate::model::Model;
 use crate::system::{Numbering, RedundantRows, flexible};
 use std::sync::Arc;
 
-/// Newton's method stops at this error of a step, relative to its largest increments of position,
-/// rotation, velocity and angular velocity. It is the relative error of accelerations.
-const TOLERANCE: f64 = 1e-13;
 /// Below this relative change a stagnating iteration has reached round-off.
 const STAGNANT: f64 = 1e-9;
 /// A scaled residual below this, relative to the largest coordinate, is round-off.
@@ -63,6 +60,8 @@ enum Correction<S> {
 pub struct Newton<'a, S> {
     equations: Equations<'a, S>,
     numbering: &'a Numbering,
+    /// Error of a step at which it ends. It is the relative error of accelerations.
+    tolerance: f64,
     matrix: SparseMatrix<S>,
     factors: SparseLu<S>,
     /// c h of the kept factors; `None` without factors.
@@ -89,13 +88,13 @@ pub struct Newton<'a, S> {
 
 impl<'a, S: SolveScalar> Newton<'a, S> {
     /// Plans the solution of the model's equations.
-    pub fn new(model: &'a Model<S>, numbering: &'a Numbering, solver: LinearSolver) -> Self {
+    pub fn new(model: &'a Model<S>, numbering: &'a Numbering, solver: StepSolver) -> Self {
         let mut equations = Equations::new(model, numbering);
         let length = equations.length();
         let pattern = equations.pattern(&Stage::zero(numbering).instant());
         let shells = flexible::has_shells(model);
         Self {
-            correction: match solver {
+            correction: match solver.linear {
                 _ if S::INFINITESIMAL || !shells => Correction::Nothing,
                 LinearSolver::Direct => Correction::Broyden(Broyden::new()),
                 LinearSolver::Krylov => {
@@ -104,6 +103,10 @@ impl<'a, S: SolveScalar> Newton<'a, S> {
             },
             equations,
             numbering,
+            tolerance: match S::INFINITESIMAL {
+                true => TO_ROUND_OFF,
+                false => solver.newton,
+            },
             factors: SparseLu::new(&pattern),
             matrix: SparseMatrix::new(pattern),
             factored: None,
@@ -298,7 +301,7 @@ impl<'a, S: SolveScalar> Newton<'a, S> {
             let small = size <= scales.round_off.max(STAGNANT) || residual <= round_off;
             let stagnant = iteration > 2
                 && (standing && contraction > still || small && contraction > slowest);
-            let converged = remaining <= TOLERANCE
+            let converged = remaining <= self.tolerance
                 || told(BackwardError::will_be_solved)
                 || remaining <= self.floor.negligible() && told(BackwardError::will_stand);
             if suffices && (polish || converged || stagnant) {

@@ -10,7 +10,7 @@ use super::stage_newton::{self, StageNewton};
 use super::tangent::TangentError;
 use crate::integrate::failure::IntegrationFailure;
 use crate::integrate::scale::Scale;
-use crate::integrate::settings::{LinearSolver, Method};
+use crate::integrate::settings::{Method, StepSolver};
 use crate::integrate::work::WorkCounts;
 use crate::integrate::{has_kinks, stage_time};
 use crate::linalg::SolveScalar;
@@ -43,7 +43,7 @@ type Guess<S> = fn(&mut Past<S>, &Numbering, S, &mut Stage<S>);
 /// Makes the steps of a method.
 pub(super) struct Solver<'a, S> {
     method: Method,
-    linear: LinearSolver,
+    solver: StepSolver,
     model: &'a Model<S>,
     real: &'a Model<f64>,
     numbering: &'a Numbering,
@@ -71,7 +71,7 @@ impl<'a, S: SolveScalar> Solver<'a, S> {
     /// A solver of `method` for a model with the real part `real`. `estimates` states whether
     /// errors will be needed.
     pub fn new(
-        (method, linear): (Method, LinearSolver),
+        (method, solver): (Method, StepSolver),
         (model, real): (&'a Model<S>, &'a Model<f64>),
         (numbering, scheme): (&'a Numbering, &'a Scheme),
         estimates: bool,
@@ -79,7 +79,7 @@ impl<'a, S: SolveScalar> Solver<'a, S> {
         let lengths = [numbering.positions(), numbering.velocities()];
         Self {
             method,
-            linear,
+            solver,
             model,
             real,
             numbering,
@@ -118,9 +118,9 @@ impl<'a, S: SolveScalar> Solver<'a, S> {
         match &newton.one {
             None => self.one = None,
             Some(kept) => {
-                let (model, numbering, linear) = (self.model, self.numbering, self.linear);
+                let (model, numbering, solver) = (self.model, self.numbering, self.solver);
                 let newton =
-                    (self.one).get_or_insert_with(|| Newton::new(model, numbering, linear));
+                    (self.one).get_or_insert_with(|| Newton::new(model, numbering, solver));
                 newton.leave_out(&self.left_out);
                 newton.restore(kept, counts);
             }
@@ -129,9 +129,14 @@ impl<'a, S: SolveScalar> Solver<'a, S> {
             None => self.coupled = None,
             Some(kept) => {
                 let estimates = self.estimate.is_some();
-                let (model, real) = (self.model, self.real);
+                let (model, real, newton) = (self.model, self.real, self.solver.newton);
                 let newton = self.coupled.get_or_insert_with(|| {
-                    StageNewton::new(model, real, self.numbering, self.scheme, estimates)
+                    StageNewton::new(
+                        (model, real),
+                        self.numbering,
+                        self.scheme,
+                        (estimates, newton),
+                    )
                 });
                 newton.leave_out(&self.left_out);
                 newton.restore(kept, counts);
@@ -188,8 +193,10 @@ impl<'a, S: SolveScalar> Solver<'a, S> {
             };
             place(stages, &past.from);
             let (scheme, estimates) = (self.scheme, self.estimate.is_some());
-            let newton = (self.coupled)
-                .get_or_insert_with(|| StageNewton::new(model, real, numbering, scheme, estimates));
+            let tolerance = self.solver.newton;
+            let newton = (self.coupled).get_or_insert_with(|| {
+                StageNewton::new((model, real), numbering, scheme, (estimates, tolerance))
+            });
             newton.leave_out(&self.left_out);
             let found = newton.solve(stages, h, at, counts);
             if found.is_err() && self.shells {
@@ -223,10 +230,10 @@ impl<'a, S: SolveScalar> Solver<'a, S> {
         stage.time = stage_time((start, h), 1.0, kinks);
         self.history.set(&formula, &self.memory, h);
         let history = &self.history;
-        let linear = self.linear;
+        let solver = self.solver;
         let newton = self
             .one
-            .get_or_insert_with(|| Newton::new(model, numbering, linear));
+            .get_or_insert_with(|| Newton::new(model, numbering, solver));
         newton.leave_out(&self.left_out);
         let found = newton.solve(stage, history, h, at, counts);
         // The extrapolation over large steps may be a bad guess, and so are accelerations of light parts.

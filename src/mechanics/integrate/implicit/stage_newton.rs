@@ -9,6 +9,7 @@ use super::radau::Scheme;
 use super::scales::{Scales, SceneScale};
 use super::stage_factors::StageFactors;
 use crate::integrate::failure::IntegrationFailure;
+use crate::integrate::settings::TO_ROUND_OFF;
 use crate::integrate::work::WorkCounts;
 use crate::linalg::{Pivots, SolveScalar};
 use crate::math::Scalar;
@@ -17,9 +18,6 @@ use crate::system::{Numbering, RedundantRows, flexible};
 use std::f64::consts::SQRT_2;
 use std::sync::Arc;
 
-/// Newton's method stops at this error of the stages, relative to the largest increments of the
-/// step.
-const TOLERANCE: f64 = 1e-13;
 /// Below this relative change a stagnating iteration has reached round-off. Stiff forces magnify
 /// the round-off of positions.
 const STAGNANT: f64 = 1e-7;
@@ -69,6 +67,8 @@ pub struct StageNewton<'a, S> {
     equations: Equations<'a, S>,
     numbering: &'a Numbering,
     scheme: &'a Scheme,
+    /// Error of the stages at which it ends.
+    tolerance: f64,
     factors: StageFactors<'a>,
     /// With finite elements: corrections of the kept factors, and the work with them. The factors are then
     /// renewed within a step.
@@ -92,13 +92,12 @@ pub struct StageNewton<'a, S> {
 
 impl<'a, S: SolveScalar> StageNewton<'a, S> {
     /// Plans the solution. `real` is the real part of `model`; `estimates` states whether errors
-    /// will be needed.
+    /// will be needed. Without infinitesimal parts it ends at the error `tolerance`.
     pub fn new(
-        model: &'a Model<S>,
-        real: &'a Model<f64>,
+        (model, real): (&'a Model<S>, &'a Model<f64>),
         numbering: &'a Numbering,
         scheme: &'a Scheme,
-        estimates: bool,
+        (estimates, tolerance): (bool, f64),
     ) -> Self {
         let real = Equations::new(real, numbering);
         let zero = Stage::zero(numbering);
@@ -108,6 +107,10 @@ impl<'a, S: SolveScalar> StageNewton<'a, S> {
             equations: Equations::new(model, numbering),
             numbering,
             scheme,
+            tolerance: match S::INFINITESIMAL {
+                true => TO_ROUND_OFF,
+                false => tolerance,
+            },
             factors: StageFactors::new(real, numbering, scheme, estimates),
             broyden: shells.then(Broyden::new),
             pace: Pace::default(),
@@ -234,7 +237,7 @@ impl<'a, S: SolveScalar> StageNewton<'a, S> {
             let stands = iteration > 2 && contraction > 0.3;
             let mut stagnant = stands && size <= scales.round_off.max(STAGNANT);
             let mut noise = None;
-            if stands && !stagnant && remaining > TOLERANCE {
+            if stands && !stagnant && remaining > self.tolerance {
                 let gives_up = iteration == iterations || slow;
                 let known = self.is_round_off(&scales);
                 if known || gives_up {
@@ -245,7 +248,7 @@ impl<'a, S: SolveScalar> StageNewton<'a, S> {
             }
             let judged = self.backward.as_ref().filter(|_| self.broyden.is_some());
             let solved = judged.is_some_and(BackwardError::will_be_solved);
-            if remaining <= TOLERANCE || stagnant || solved {
+            if remaining <= self.tolerance || stagnant || solved {
                 self.noise = noise;
                 if S::INFINITESIMAL {
                     let mut count = INFINITESIMAL_ITERATIONS;
