@@ -10,8 +10,8 @@ use super::shared::Shared;
 use crate::functions::resolution::{Resolution, resolution};
 use crate::functions::{Function, Reduction, Scene};
 use crate::integrate::{
-    Chosen, Grid, IntegrationFailure, Limits, LinearSolver, Method, Samples, Settings, Spacing,
-    StepSolver, Trajectory, choice, has_kinks, simulate, simulate_by,
+    Chosen, Grid, IntegrationFailure, Limits, Method, Samples, Settings, Spacing, StepSolver,
+    Trajectory, choice, has_kinks, simulate, simulate_by,
 };
 use crate::problem::{Case, Division, Problem};
 use serde::{Deserialize, Serialize};
@@ -42,7 +42,7 @@ pub const FIRST_DESIGN: &str = "first design";
 #[derive(Clone, Debug)]
 pub struct Integration {
     method: Option<Method>,
-    solver: LinearSolver,
+    solver: StepSolver,
     spacing: Spacing,
     samples: Samples,
     limits: Limits,
@@ -108,6 +108,18 @@ pub struct Refresh {
     pub cases: Vec<Option<Refresh>>,
 }
 
+/// How steps are solved: those of a phase to round-off, as events and later phases multiply what Newton's method leaves.
+fn solver(problem: &Problem, spacing: &Spacing) -> StepSolver {
+    let linear = problem.simulation.solver;
+    match problem.is_phase() {
+        true => StepSolver {
+            linear,
+            ..StepSolver::default()
+        },
+        false => StepSolver::suited(linear, spacing),
+    }
+}
+
 /// Name of the method in records of problems with cases.
 pub(super) const OF_CASES: &str = "cases";
 
@@ -150,7 +162,7 @@ impl Integration {
         };
         Self {
             method: simulation.method,
-            solver: simulation.solver,
+            solver: solver(problem, &spacing),
             spacing,
             samples,
             limits: simulation.limits.clone(),
@@ -179,7 +191,7 @@ impl Integration {
         }
         Self {
             method: None,
-            solver: problem.simulation.solver,
+            solver: StepSolver::default(),
             spacing: problem.simulation.spacing.clone(),
             samples: Samples::Uniform(1),
             limits: problem.simulation.limits.clone(),
@@ -424,7 +436,7 @@ impl Integration {
     pub(super) fn wanted(&self) -> Settings {
         Settings {
             method: self.method.unwrap_or(Method::Dop853),
-            solver: StepSolver::suited(self.solver, &self.spacing),
+            solver: self.solver,
             spacing: self.spacing.clone(),
             samples: self.samples,
             limits: self.limits.clone(),

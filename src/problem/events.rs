@@ -10,8 +10,8 @@
 //! ```
 
 use super::Problem;
-use super::cases::{Case, Cases, Division};
 use super::composed::{Composed, Composition, Term, distance_from_start};
+use super::division::{Case, Cases, Division};
 use super::expression::{Call, Expression, Operator};
 use super::fault::Faults;
 use super::finding::Finding;

@@ -19,6 +19,7 @@ mod courses;
 mod data_file;
 mod data_text;
 mod derived;
+mod division;
 mod drawing;
 mod elastic_drawing;
 pub mod elements;
@@ -84,9 +85,9 @@ use flexbody_mechanics::{adjoint, functions, integrate, lower, model, structures
 use flexbody_optimiser as optimiser;
 
 pub use aggregates::OpenAggregate;
-pub use cases::{Case, Cases, Division};
 pub use composed::{Composed, Composition, Partials};
 use derived::Derived;
+pub use division::{Case, Cases, Division};
 pub use drawing::{BarrierLine, Drawing, Outline};
 pub use elastic_drawing::{DeformedLine, ElasticPoint, Trace};
 pub use fault::{Fault, Faults};

@@ -243,11 +243,11 @@ fn has_rate(of: &Quantity<f64>) -> bool {
     }
 }
 
-/// Size and tolerance of derivatives. A rate divides round-off by the distance of samples, here 1e-3 … 1e-2 s. Powers and
-/// reactions that cancel to zero have the round-off of their terms, of the order of ten.
+/// Size and tolerance of derivatives. A rate divides round-off by the distance of samples, here 1e-3 … 1e-2 s: that of powers
+/// is then up to 1.2e-10. Powers and reactions that cancel to zero have the round-off of their terms, of the order of ten.
 fn size_and_tolerance(function: &Function<f64>, value: f64) -> (f64, f64) {
     let tolerance = match function.quantity().is_some_and(has_rate) {
-        true => 1e-10,
+        true => 3e-10,
         false => 1e-11,
     };
     (value.abs().max(1.0), tolerance)

@@ -137,7 +137,7 @@ const BDF: Method = Method::Bdf {
 /// (`benchmarks.rs` runs them through it with reductions).
 #[test]
 fn every_problem_moves_the_same_lowered() {
-    let all: [(&str, bool, &[Method], f64); 23] = [
+    let all: [(&str, bool, &[Method], f64); 24] = [
         ("bump_stop", true, &[Method::Dop853, RADAU], 1e-10),
         ("cart_pole", true, &[Method::Dop853, RADAU], 1e-10),
         ("desk_lamp", true, &[Method::Dop853], 1e-11),
@@ -186,6 +186,12 @@ fn every_problem_moves_the_same_lowered() {
             1e-11,
         ),
         ("benchmarks/stiff_pendulum", true, &[RADAU], 5e-9),
+        (
+            "benchmarks/two_link_reach",
+            true,
+            &[Method::Dop853, RADAU],
+            1e-10,
+        ),
     ];
     let mut files: Vec<PathBuf> = Vec::new();
     for folder in ["problems", "problems/benchmarks"] {
