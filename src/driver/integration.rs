@@ -4,6 +4,7 @@
 mod tangent;
 
 use super::event::{self, Admit};
+pub use super::event_times::Events;
 use super::flexible_limits;
 use super::memory;
 use super::shared::Shared;
@@ -14,7 +15,6 @@ use crate::integrate::{
     Trajectory, choice, has_kinks, simulate, simulate_by,
 };
 use crate::problem::{Case, Division, Problem};
-use serde::{Deserialize, Serialize};
 use std::sync::Arc;
 
 /// Samples of a motion with steps by tolerance, for tables, figures and events.
@@ -68,15 +68,6 @@ pub struct Integration {
     pub cases: Vec<Option<Integration>>,
     /// The ranks over which the cases are spread, if they are.
     pub(crate) shared: Option<Arc<Shared>>,
-}
-
-/// When motions end at an event, if they do \[s\].
-#[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
-pub struct Events {
-    /// That of the scene.
-    pub own: Option<f64>,
-    /// Of a problem with cases: that of each, or of each of its phases.
-    pub cases: Vec<Option<f64>>,
 }
 
 /// Method and steps of an earlier choice.

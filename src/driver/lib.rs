@@ -17,6 +17,7 @@ mod estimate;
 pub mod evaluate;
 pub mod evaluator;
 pub mod event;
+mod event_times;
 pub mod explain;
 pub mod fit;
 mod flexible_limits;

@@ -5,8 +5,8 @@
 //! whatever the number of ranks. What depends on a clock, a signal or a disk is no choice of one rank: it travels with the
 //! numbers, and all ranks act on it after the same exchange.
 
+use crate::event_times::Events;
 use crate::integrate::WorkCounts;
-use crate::integration::Events;
 use crate::report::evaluations::{StepsInUse, Work};
 use serde::{Deserialize, Serialize};
 use std::fmt;

@@ -64,10 +64,6 @@ pub enum Release<S> {
 
 /// A function of interest.
 #[derive(Clone, Debug)]
-#[expect(
-    clippy::large_enum_variant,
-    reason = "a scene has few functions, and a box would only hide the window"
-)]
 pub enum Function<S> {
     /// A quantity, reduced over the run or a window.
     Reduced {

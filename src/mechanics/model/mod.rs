@@ -146,7 +146,9 @@ impl<S: Scalar> Model<S> {
 
     /// Whether the position of a body is no place: it counts turns, or is the coordinate of a coupling or a controller.
     pub fn holds_angles(&self, body: usize) -> bool {
-        self.is_counter(body) || self.is_coordinate(body)
+        // It has one unknown at most, as few bodies do.
+        let few = self.bodies[body].mobility.unknowns() <= 1;
+        few && (self.is_counter(body) || self.is_coordinate(body))
     }
 
     /// Whether a body counts the turns of a joint for a load.
