@@ -6030,7 +6030,7 @@ class MachineKeys(Document):
         on : list of texts, optional
             Names of joints, loads and drives that go on. They are off before, from the start or by an event. A joint
             closes where its bodies are then: its frame on its second body becomes that on its first one, and a rod
-            keeps the distance of its ends.
+            keeps the distance of its ends. A drive goes on from where its joint is then.
         """
         return Name(name, self._add("events", "event", name, keys(locals(), "name")))
 
