@@ -1,11 +1,12 @@
 //! Cables and winches against closed forms: Atwood's machine, a loose block, rebounds, a winch that drags a body;
 //! energy and power, derivatives by every method, families.
 
-use crate::reference::documents::{problem as parsed, run, value, values, vary};
+use crate::reference::documents::{
+    problem as parsed, reversed, run, unlowered_values, value, values, vary,
+};
 use crate::reference::gradients::gradients_are_exact;
 use crate::stops::rebound;
-use flexbody_driver::simulate;
-use serde_json::{Map, Value};
+use serde_json::Value;
 use std::f64::consts::PI;
 
 fn near(found: f64, exact: f64, tolerance: f64, what: &str) {
@@ -208,19 +209,9 @@ fn the_same_in_other_descriptions() {
             );
         }
     };
-    let mut full = parsed(&document);
-    full.lowering = None;
-    let motion = simulate(&full, &full.start()).expect("a motion");
-    let found: Vec<f64> = (0..reference.len())
-        .map(|f| motion.at.function(f).value)
-        .collect();
-    agree(&found, "without reductions");
-    let mut reversed = document.clone();
-    for key in ["bodies", "loads"] {
-        let all = reversed[key].as_object().expect("an object").clone();
-        reversed[key] = all.into_iter().rev().collect::<Map<_, _>>().into();
-    }
-    agree(&values(&reversed), "in another order");
+    agree(&unlowered_values(&document), "without reductions");
+    let other = reversed(&document, &["bodies", "loads"]);
+    agree(&values(&other), "in another order");
     let mut backward = document.clone();
     for load in ["hoist", "stay"] {
         let points = &mut backward["loads"][load]["cable"]["points"];

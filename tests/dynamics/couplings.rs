@@ -1,11 +1,13 @@
 //! Couplings against closed forms: gears on ground, planetary sets by Willis' formula, bevel gears with bearing moments, racks,
 //! screws, belts; a hundred turns, derivatives by every method, families, rest and vibrations, starts, redundancy.
 
-use crate::reference::documents::{problem as parsed, run, value, values, vary};
+use crate::reference::documents::{
+    problem as parsed, reversed, run, unlowered_values, value, values, vary,
+};
 use crate::reference::gradients::gradients_are_exact;
 use flexbody_driver::simulate;
 use flexbody_problem::Problem;
-use serde_json::{Map, Value};
+use serde_json::Value;
 use std::f64::consts::{PI, TAU};
 
 /// A disc of revolution about z with these moments.
@@ -514,12 +516,8 @@ fn the_same_in_other_descriptions() {
         [0.0, 0.6, 0.8],
     ];
     agree(&values(&turned(&document, &oblique)), "turned");
-    let mut reversed = document.clone();
-    for key in ["bodies", "joints", "couplings"] {
-        let all = reversed[key].as_object().expect("an object").clone();
-        reversed[key] = all.into_iter().rev().collect::<Map<_, _>>().into();
-    }
-    agree(&values(&reversed), "in another order");
+    let other = reversed(&document, &["bodies", "joints", "couplings"]);
+    agree(&values(&other), "in another order");
     let mut exchanged = document.clone();
     for (joint, between) in [
         ("sun", ["sun", "ground"]),
@@ -533,13 +531,7 @@ fn the_same_in_other_descriptions() {
     exchanged["couplings"]["belt"]["belt"]["pulleys"] = json!(["sun", "shaft"]);
     exchanged["couplings"]["belt"]["belt"]["radii"] = json!([0.08, 0.05]);
     agree(&values(&exchanged), "sides exchanged");
-    let mut problem = parsed(&document);
-    problem.lowering = None;
-    let motion = simulate(&problem, &problem.start()).expect("a motion");
-    let found: Vec<f64> = (0..reference.len())
-        .map(|f| motion.at.function(f).value)
-        .collect();
-    agree(&found, "without reductions");
+    agree(&unlowered_values(&document), "without reductions");
 }
 
 /// Planar sets are reduced to their plane, also in millimetres and mirrored, with the same motion.

@@ -1,7 +1,7 @@
 //! Motions that events divide: closed forms, exact derivatives through one, two and five events by every method, equal results
 //! of equal machines, energy in jumps, and events that do not come.
 
-use crate::reference::documents::problem;
+use crate::reference::documents::{problem, reversed};
 use crate::reference::gradients::gradients_of_expressions_are_exact as gradients_are_exact;
 use flexbody_driver::analysed::InCases;
 use flexbody_driver::{Simulated, Simulation, check};
@@ -276,12 +276,7 @@ fn equal_machines_move_alike() {
     let base = arms(5, &json!({"tolerance": 1e-10}));
     let own = problem(&base);
     let at = simulated(&own);
-    let mut reordered = base.clone();
-    for section in ["bodies", "joints", "loads", "functions"] {
-        let entries = base[section].as_object().expect("a section");
-        let all = entries.iter().rev().map(|(k, v)| (k.clone(), v.clone()));
-        reordered[section] = Value::Object(all.collect());
-    }
+    let reordered = reversed(&base, &["bodies", "joints", "loads", "functions"]);
     let mut swapped = base.clone();
     swapped["joints"]["lock"]["weld"]["between"] = json!(["upper", "lower"]);
     let mut turned = base.clone();

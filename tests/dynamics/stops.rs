@@ -1,7 +1,9 @@
 //! Stops of joints and distances: rebounds against the implicit formula, penetrations in closed form, energy, families,
 //! derivatives, and contacts that come and go between steps.
 
-use crate::reference::documents::{problem as parsed, run, value, values, vary};
+use crate::reference::documents::{
+    problem as parsed, reversed, run, unlowered_values, value, values, vary,
+};
 use crate::reference::gradients::gradients_are_exact;
 use flexbody_driver::simulate;
 use serde_json::Value;
@@ -276,23 +278,9 @@ fn the_same_in_other_descriptions() {
             .as_ref()
             .is_some_and(|lowering| lowering.plane.is_ok())
     );
-    let mut full = problem.clone();
-    full.lowering = None;
-    let motion = simulate(&full, &full.start()).expect("a motion");
-    let found: Vec<f64> = (0..reference.len())
-        .map(|f| motion.at.function(f).value)
-        .collect();
-    agree(&found, "without reductions");
-    let mut reversed = document.clone();
-    for key in ["bodies", "joints", "loads"] {
-        let all = reversed[key].as_object().expect("an object").clone();
-        reversed[key] = all
-            .into_iter()
-            .rev()
-            .collect::<serde_json::Map<_, _>>()
-            .into();
-    }
-    agree(&values(&reversed), "in another order");
+    agree(&unlowered_values(&document), "without reductions");
+    let other = reversed(&document, &["bodies", "joints", "loads"]);
+    agree(&values(&other), "in another order");
     let mut exchanged = document.clone();
     exchanged["joints"]["hinge"]["revolute"]["between"] = json!(["slider", "arm"]);
     let stop = &mut exchanged["loads"]["hinge"]["stop"];

@@ -86,6 +86,25 @@ pub fn values(file: &Value) -> Vec<f64> {
     (0..count).map(|f| motion.at.function(f).value).collect()
 }
 
+/// [`values`] of the scene without reductions.
+pub fn unlowered_values(file: &Value) -> Vec<f64> {
+    let mut full = problem(file);
+    full.lowering = None;
+    let motion = simulate(&full, &full.start()).unwrap_or_else(|failure| panic!("{failure}"));
+    let count = full.function_names.len();
+    (0..count).map(|f| motion.at.function(f).value).collect()
+}
+
+/// The file with the entries of these sections in the opposite order.
+pub fn reversed(file: &Value, sections: &[&str]) -> Value {
+    let mut other = file.clone();
+    for section in sections {
+        let all = file[section].as_object().expect("an object").clone();
+        other[section] = all.into_iter().rev().collect::<Map<_, _>>().into();
+    }
+    other
+}
+
 /// The value of a function there.
 pub fn value(file: &Value, function: &str) -> f64 {
     let names = problem(file).function_names;
