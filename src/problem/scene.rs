@@ -15,7 +15,7 @@ use crate::functions::{Function, Scene, TerminalEvent};
 use crate::math::rotation::matrix;
 use crate::math::scalar::lift3;
 use crate::math::{Scalar, Vec3};
-use crate::model::{DegreeOfFreedom, Mobility, Model, RigidBody};
+use crate::model::{DegreeOfFreedom, Mobility, Model, RigidBody, Role};
 use crate::quantity::{Vector, vector};
 use crate::schema::Document;
 use crate::schema::couplings::{Relation, Term};
@@ -277,6 +277,7 @@ fn body<S: Scalar>(
         velocity: Vec3::zeros(),
         angular_velocity: Vec3::zeros(),
         mobility: Mobility::spatial(),
+        role: Role::Solid,
     }
 }
 

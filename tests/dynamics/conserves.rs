@@ -9,7 +9,7 @@
 use crate::reference;
 
 use flexbody_mathematics::math::{Mat3, Vec3, rotation};
-use flexbody_mechanics::model::{JointKind, Mobility, Model, RigidBody};
+use flexbody_mechanics::model::{JointKind, Mobility, Model, RigidBody, Role};
 use flexbody_mechanics::system::initial::velocity_correction;
 use flexbody_mechanics::system::observe::{Observation, observe};
 use reference::models::{KINDS, free_pair};
@@ -163,6 +163,7 @@ fn a_free_top_follows_the_exact_solution() {
         velocity: Vec3::new(-0.5, 0.4, 0.6),
         angular_velocity: spin,
         mobility: Mobility::spatial(),
+        role: Role::Solid,
     };
     let momentum = rotation::matrix(&start) * (body.inertia * spin);
     let exact = |t: f64| {

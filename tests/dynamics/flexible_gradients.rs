@@ -7,13 +7,13 @@ use crate::reference;
 use flexbody_mechanics::functions::instant::DeformationKind;
 use flexbody_mechanics::functions::{Bound, Function, Instant, Reduction, Scene};
 use flexbody_mechanics::integrate::{Method, Settings, Start};
-use flexbody_mechanics::model::Model;
+use flexbody_mechanics::model::{Model, Role};
 use reference::flexible::{quadratic, swing, swing_of};
 use reference::models::Numbers;
 
 /// Functions of a point of the deformed body, of the rigid body, and of the deformation.
 fn scene(model: &Model<f64>, duration: f64) -> Scene<f64> {
-    let tip = (0..model.bodies.len()).find(|&body| model.is_interface(body));
+    let tip = (0..model.bodies.len()).find(|&body| model.bodies[body].role == Role::Interface);
     let mut numbers = Numbers(5);
     let form = quadratic(&mut numbers, model.flexible[0].modes());
     let deformation = Instant::Deformation {

@@ -9,7 +9,7 @@ use flexbody_mechanics::functions::{Function, Instant, Reduction, Scene};
 use flexbody_mechanics::integrate::{Method, Settings, Spacing, Trajectory, simulate};
 use flexbody_mechanics::lower::Plane;
 use flexbody_mechanics::model::flexible::ModalStiffness;
-use flexbody_mechanics::model::{Mobility, Model};
+use flexbody_mechanics::model::{Mobility, Model, Role};
 use flexbody_mechanics::system::Numbering;
 use flexbody_mechanics::system::observe::{Observation, observe};
 use reference::flexible::{Points, modal, modal_of, planar_swing, stiffness, swing_from, swing_of};
@@ -207,7 +207,7 @@ fn planes_are_found() {
         let mut lowered = model.clone();
         plane.apply(&mut lowered);
         assert_eq!(Numbering::new(&lowered).unknowns(), 3 * 3 + modes);
-        let tip = (0..model.bodies.len()).find(|&body| model.is_interface(body));
+        let tip = (0..model.bodies.len()).find(|&body| model.bodies[body].role == Role::Interface);
         for method in [Method::Dop853, RADAU] {
             let all = [&model, &lowered].map(|model| {
                 let run = run(model, 0.3, method, Spacing::Steps(40));

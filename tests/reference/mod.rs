@@ -14,7 +14,7 @@ pub mod shells;
 
 use flexbody_mathematics::math::{Mat3, Vec3};
 use flexbody_mechanics::integrate::{Method, Multipliers, Settings, Start, Trajectory, simulate};
-use flexbody_mechanics::model::{JointKind, Mobility, Model, RigidBody};
+use flexbody_mechanics::model::{JointKind, Mobility, Model, RigidBody, Role};
 use flexbody_mechanics::system::observe::reactions;
 use serde_json::Value;
 
@@ -99,6 +99,7 @@ fn model(scene: &Value) -> Model<f64> {
                 velocity: vector(&body["v"]),
                 angular_velocity: r.transpose() * vector(&body["omega"]),
                 mobility: Mobility::spatial(),
+                role: Role::Solid,
             }
         })
         .collect();

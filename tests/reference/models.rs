@@ -1,7 +1,7 @@
 //! General models: full inertias, skew axes, no symmetry that hides a term.
 
 use flexbody_mathematics::math::{Mat3, Vec3, rotation};
-use flexbody_mechanics::model::{Joint, JointFrame, JointKind, Mobility, Model, RigidBody};
+use flexbody_mechanics::model::{Joint, JointFrame, JointKind, Mobility, Model, RigidBody, Role};
 
 /// All kinds of joint.
 pub const KINDS: [JointKind; 8] = [
@@ -57,6 +57,7 @@ impl Numbers {
             velocity: self.vector(),
             angular_velocity: self.vector() * 2.0,
             mobility: Mobility::spatial(),
+            role: Role::Solid,
         }
     }
 }
@@ -135,6 +136,7 @@ pub fn rod(name: &str, mass: f64, x: f64) -> RigidBody<f64> {
         velocity: Vec3::zeros(),
         angular_velocity: Vec3::zeros(),
         mobility: Mobility::spatial(),
+        role: Role::Solid,
     }
 }
 

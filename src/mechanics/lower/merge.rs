@@ -116,6 +116,7 @@ pub(super) fn merge<S: Scalar>(scene: &mut Scene<S>, clusters: &[Cluster], welds
                 mass: S::zero(),
                 inertia: Mat3::zeros(),
                 mobility: Mobility::fixed(),
+                role: body.role,
                 ..copy.clone()
             };
         }

@@ -1,7 +1,7 @@
 //! The controllers of a model, and the bodies of their states.
 
 use super::controller::Controller;
-use super::{Load, LoadKind, Mobility, Model, RigidBody};
+use super::{Load, LoadKind, Mobility, Model, RigidBody, Role};
 use crate::math::Scalar;
 use std::ops::Range;
 
@@ -42,6 +42,7 @@ impl<S: Scalar> Model<S> {
                 let mut body = RigidBody::massless(format!("{name}, {what}"));
                 body.mass = S::one();
                 body.mobility = Mobility::carrier(1);
+                body.role = Role::State;
                 *state = self.bodies.len();
                 self.bodies.push(body);
             }

@@ -19,7 +19,7 @@
 use super::drive::DegreeOfFreedom;
 use super::flexible::Modes;
 use super::joint::{Joint, JointFrame, JointKind};
-use super::{Mobility, Model, RigidBody};
+use super::{Mobility, Model, RigidBody, Role};
 use crate::math::{Mat3, Scalar, Vec3, rotation};
 use std::ops::Range;
 
@@ -40,22 +40,14 @@ impl<S: Scalar> Model<S> {
         self.joints.iter().any(Joint::is_coupled)
     }
 
-    /// Whether a body carries the coordinate of a coupling, or the state of a controller.
-    pub fn is_coordinate(&self, body: usize) -> bool {
-        self.coordinates().contains(&body)
-    }
-
     /// The bodies that carry coordinates of couplings and states of controllers, with counters between them; empty without.
     pub fn coordinates(&self) -> Range<usize> {
-        let coupled = self.joints.iter().filter(|joint| joint.is_coupled());
-        let modes = coupled.filter_map(|joint| joint.modes.as_ref());
-        let all = modes.flat_map(|own| &own.places).map(|own| own.0);
-        let all = all.chain(self.states());
-        let ends = all.fold(None, |ends: Option<(usize, usize)>, body| match ends {
-            None => Some((body, body)),
-            Some((first, last)) => Some((first.min(body), last.max(body))),
-        });
-        ends.map_or(0..0, |(first, last)| first..last + 1)
+        let holds = |body: &RigidBody<S>| matches!(body.role, Role::Coordinate | Role::State);
+        let first = self.bodies.iter().position(holds);
+        let last = self.bodies.iter().rposition(holds);
+        first
+            .zip(last)
+            .map_or(0..0, |(first, last)| first..last + 1)
     }
 
     /// The bodies of each coupling: those of its joints (`None` is ground), and those that carry its coordinates.
@@ -91,6 +83,7 @@ impl<S: Scalar> Model<S> {
             let of = &motion.joint.name;
             let mut carrier = RigidBody::massless(format!("{name}, motion of {of}"));
             carrier.mobility = Mobility::carrier(1);
+            carrier.role = Role::Coordinate;
             self.bodies.push(carrier);
             self.follow(name, motion, S::zero(), vec![(first + i, S::one())]);
         }

@@ -41,7 +41,7 @@ pub use joint::{ConstraintRow, Fit, Joint, JointFrame, JointKind};
 pub use load::{Load, LoadKind};
 pub use mobility::Mobility;
 pub use normal_law::NormalLaw;
-pub use rigid_body::RigidBody;
+pub use rigid_body::{RigidBody, Role};
 pub use s_curve::SCurve;
 pub use table::{Interpolation, Smoothness};
 pub use time_function::TimeFunction;
@@ -140,21 +140,15 @@ impl<S: Scalar> Model<S> {
 
     /// Whether a body carries elastic coordinates, the coordinate of a coupling or the state of a controller, or counts turns.
     pub fn is_carrier(&self, body: usize) -> bool {
-        let mut all = self.flexible.iter();
-        all.any(|flexible| flexible.carriers().contains(&body)) || self.holds_angles(body)
+        self.bodies[body].role == Role::Elastic || self.holds_angles(body)
     }
 
     /// Whether the position of a body is no place: it counts turns, or is the coordinate of a coupling or a controller.
     pub fn holds_angles(&self, body: usize) -> bool {
-        // It has one unknown at most, as few bodies do.
-        let few = self.bodies[body].mobility.unknowns() <= 1;
-        few && (self.is_counter(body) || self.is_coordinate(body))
-    }
-
-    /// Whether a body counts the turns of a joint for a load.
-    pub fn is_counter(&self, body: usize) -> bool {
-        let mut all = self.loads.iter().flat_map(|load| load.kind.counters());
-        all.any(|(_, counter)| counter == body)
+        matches!(
+            self.bodies[body].role,
+            Role::Counter | Role::Coordinate | Role::State
+        )
     }
 
     /// Gives a load bodies that count the turns of its joints, whose angles start so: one of a torsion spring or a stop; of a
@@ -172,6 +166,7 @@ impl<S: Scalar> Model<S> {
             *counter = Some(self.bodies.len());
             let mut own = RigidBody::massless(format!("{name}, turns"));
             own.mobility = Mobility::fixed();
+            own.role = Role::Counter;
             own.position.x = S::from(*angle);
             self.bodies.push(own);
         }
@@ -180,20 +175,12 @@ impl<S: Scalar> Model<S> {
     /// Whether a body is the frame, a carrier or an interface of a flexible body.
     pub fn is_of_flexible(&self, body: usize) -> bool {
         let frame = self.flexible.iter().any(|flexible| flexible.frame == body);
-        frame || self.is_carrier(body) || self.is_interface(body)
+        frame || self.is_internal(body)
     }
 
-    /// Whether a body stands for a point of a flexible body.
-    pub fn is_interface(&self, body: usize) -> bool {
-        let of =
-            |joint: &Joint<S>| joint.kind == JointKind::Attachment && joint.body_b == Some(body);
-        self.joints.iter().any(of)
-    }
-
-    /// Whether a body is not in the problem file: it carries elastic coordinates, counts turns or is a point of a
-    /// flexible body.
+    /// Whether a body is not in the problem file.
     pub fn is_internal(&self, body: usize) -> bool {
-        self.is_carrier(body) || self.is_interface(body)
+        self.bodies[body].role != Role::Solid
     }
 
     /// Adds a flexible body whose frame is body `frame`, with the start of its coordinates and
@@ -210,6 +197,7 @@ impl<S: Scalar> Model<S> {
         for count in flexible::carriers(elastic.len()) {
             let mut carrier = RigidBody::massless(format!("{name}, coordinates from {}", at + 1));
             carrier.mobility = Mobility::carrier(count);
+            carrier.role = Role::Elastic;
             for k in 0..count {
                 carrier.position[k] = elastic[at + k];
                 carrier.velocity[k] = elastic_rate[at + k];
@@ -297,6 +285,7 @@ impl<S: Scalar> Model<S> {
         let host = &self.bodies[frame];
         let turned = rotation::matrix(&host.orientation);
         let mut interface = RigidBody::massless(format!("{}, {name}", host.name));
+        interface.role = Role::Interface;
         interface.position = host.position + turned * place;
         interface.orientation = host.orientation;
         interface.velocity = host.velocity + turned * (host.angular_velocity.cross(&place) + speed);

@@ -7,6 +7,23 @@ use crate::math::{Mat3, Scalar, Vec3, parameters};
 /// A violation of the conditions of a solid up to this fraction of the largest moment is round-off.
 pub const ROUNDING: f64 = 1e-12;
 
+/// What a body of a model stands for. Only solids are in the problem file.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Role {
+    /// A body.
+    Solid,
+    /// A point of a flexible body.
+    Interface,
+    /// Elastic coordinates of a flexible body.
+    Elastic,
+    /// The turns of a joint that a load counts.
+    Counter,
+    /// The coordinate of a coupling.
+    Coordinate,
+    /// The state of a controller, which is a velocity.
+    State,
+}
+
 /// A rigid body. Its reference point is the centre of mass. Its axes are those of the body in the
 /// problem file.
 #[derive(Clone, Debug)]
@@ -27,10 +44,12 @@ pub struct RigidBody<S> {
     pub angular_velocity: Vec3<S>,
     /// The velocities that the body can have, for all designs.
     pub mobility: Mobility,
+    /// What it stands for.
+    pub role: Role,
 }
 
 parameters!(struct RigidBody {
-    name, mobility;
+    name, mobility, role;
     mass, inertia, position, orientation, velocity, angular_velocity
 });
 
@@ -47,6 +66,7 @@ impl<S: Scalar> RigidBody<S> {
             velocity: Vec3::zeros(),
             angular_velocity: Vec3::zeros(),
             mobility: Mobility::spatial(),
+            role: Role::Solid,
         }
     }
 

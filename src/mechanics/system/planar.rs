@@ -18,7 +18,7 @@ use super::numbering::Numbering;
 use super::rows::{Markers, MarkersUsed, Rows};
 use crate::math::scalar::along;
 use crate::math::{Scalar, Vec3};
-use crate::model::{ConstraintRow, Joint, JointFrame, Model};
+use crate::model::{ConstraintRow, Joint, JointFrame, Model, Role};
 use nalgebra::Vector2;
 use std::iter::Copied;
 use std::slice::Iter;
@@ -159,10 +159,9 @@ impl<S: Scalar> PlanarJoints<S> {
     pub fn of(model: &Model<S>) -> Option<Self> {
         let mut plane = None;
         let mut planes = Vec::with_capacity(model.bodies.len() + 1);
-        let states = model.states();
         for (i, body) in model.bodies.iter().enumerate() {
             // No joint holds it.
-            if model.is_counter(i) || states.contains(&i) {
+            if matches!(body.role, Role::Counter | Role::State) {
                 planes.push(BodyPlane {
                     along: [Vec3::x(), Vec3::y()],
                     normal: Vec3::z(),
