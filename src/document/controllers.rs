@@ -106,6 +106,10 @@ pub struct Motor {
     #[serde(default = "one")]
     #[schemars(extend("unit" = "rad/m or 1", "exclusiveMinimum" = 0))]
     pub gear_ratio: Quantity,
+    /// Inertia of what turns with the motor, default none. Through the gear the joint feels its product with the square of
+    /// `gear_ratio`; that the motor also turns with the body on which it sits is left out.
+    #[schemars(extend("unit" = "kg m² (kg of a linear motor)", "minimum" = 0))]
+    pub rotor_inertia: Option<Quantity>,
     /// Largest torque of the motor (force of a linear motor), as by its current; default none.
     #[schemars(extend("unit" = "N m", "exclusiveMinimum" = 0))]
     pub torque: Option<Quantity>,

@@ -1,6 +1,6 @@
 //! Couplings in a file.
 
-use super::loads::Motion;
+use super::loads::{Interpolation, Motion};
 use super::mechanics::Location;
 use crate::quantity::Quantity;
 use schemars::JsonSchema;
@@ -23,6 +23,8 @@ pub enum Coupling {
     Belt(Belt),
     /// Σ factor · motion = constant.
     Relation(Relation),
+    /// A motion that is a function of another.
+    Cam(Cam),
 }
 
 /// Two gears with parallel axes.
@@ -142,6 +144,59 @@ pub struct Term {
     pub slide: Option<Quantity>,
 }
 
+/// A motion that is a function of another: a follower on a cam, a bead on a curve. Both are measured as functions measure them.
+#[derive(Clone, Debug, Deserialize, JsonSchema)]
+#[serde(deny_unknown_fields)]
+pub struct Cam {
+    /// The motion on which the profile depends.
+    pub cam: JointMotion,
+    /// The motion that follows it.
+    pub follower: JointMotion,
+    /// The motion of the follower by that of the cam.
+    pub profile: Profile,
+}
+
+/// A motion of a joint: that of its first body against the second (ground counts as the second).
+#[derive(Clone, Debug, Deserialize, JsonSchema, PartialEq, Eq)]
+#[serde(rename_all = "snake_case")]
+pub enum JointMotion {
+    /// The angle of this revolute, planar or cylindrical joint.
+    Turn(String),
+    /// The displacement of this prismatic or cylindrical joint.
+    Slide(String),
+}
+
+impl JointMotion {
+    /// The joint.
+    pub fn joint(&self) -> &String {
+        match self {
+            Self::Turn(joint) | Self::Slide(joint) => joint,
+        }
+    }
+
+    /// How it moves.
+    pub fn motion(&self) -> Motion {
+        match self {
+            Self::Turn(_) => Motion::Turn,
+            Self::Slide(_) => Motion::Slide,
+        }
+    }
+}
+
+/// A function that is twice continuously differentiable, level at both ends and constant beyond.
+#[derive(Clone, Debug, Deserialize, JsonSchema)]
+#[serde(deny_unknown_fields)]
+pub struct Profile {
+    /// Values of the motion of the cam, ascending.
+    #[schemars(extend("unit" = "m or rad"), length(min = 2))]
+    pub at: Vec<f64>,
+    /// The motion of the follower at each.
+    #[schemars(extend("unit" = "m or rad"), length(min = 2))]
+    pub values: Vec<Quantity>,
+    /// Interpolation between them, default spline.
+    pub interpolation: Option<Interpolation>,
+}
+
 /// How a coupling acts on a body.
 #[derive(Clone, Debug, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
@@ -180,6 +235,7 @@ impl Coupling {
             Self::Screw(_) => "screw",
             Self::Belt(_) => "belt",
             Self::Relation(_) => "relation",
+            Self::Cam(_) => "cam",
         }
     }
 
@@ -210,7 +266,7 @@ impl Coupling {
                 radii: own.radii,
                 ratio: own.ratio,
             }),
-            Self::RackAndPinion(_) | Self::Screw(_) | Self::Relation(_) => None,
+            Self::RackAndPinion(_) | Self::Screw(_) | Self::Relation(_) | Self::Cam(_) => None,
         }
     }
 }

@@ -1,14 +1,16 @@
 //! Makes the controllers of a model from those of a file.
 //!
 //! At rest a lag has settled, and an integral is whatever leaves no error: the joint is held at its reference as by a drive,
-//! whose torque or force is the effort.
+//! whose torque or force is the effort. Vibrations about rest are those of the closed loop.
 
 use super::courses::course;
 use super::load_ends::{course as magnitude, dof, ends, joint};
 use super::placement::Assembly;
 use crate::math::{Scalar, Vec3};
-use crate::model::controller::{Controller, Coordinate, Feedback, Integral, Lag, Limits, Weight};
-use crate::model::{DegreeOfFreedom, Drive, LoadKind, Model, TimeFunction};
+use crate::model::controller::{
+    Controller, Coordinate, Feedback, Integral, Lag, Limits, Regime, Weight,
+};
+use crate::model::{CoupledMotion, DegreeOfFreedom, Drive, LoadKind, Model, TimeFunction};
 use crate::quantity::Quantity;
 use crate::schema::Document;
 use crate::schema::controllers::{Controller as Written, Feedback as WrittenFeedback, Reference};
@@ -24,10 +26,6 @@ pub fn controller<S: Scalar>(
     assembly: &Assembly<S>,
     written: &Written,
 ) -> Controller<S> {
-    if is_held(document, written) {
-        let followed = reference(document, assembly, &written.reference);
-        return idle(coordinate(document, assembly, written), followed);
-    }
     let get = |quantity: &Quantity| assembly.quantity(quantity);
     let some = |quantity: &Option<Quantity>| quantity.as_ref().map(get);
     let motor = written.motor.as_ref();
@@ -57,7 +55,10 @@ pub fn controller<S: Scalar>(
     let feed_forward = written.feed_forward.as_ref();
     let feed_forward = feed_forward.map(|own| magnitude(assembly, own.parts()));
     Controller {
-        acts: true,
+        regime: match document.is_rest() {
+            true => Regime::Settled,
+            false => Regime::Running,
+        },
         feedback: std::iter::once(first)
             .chain(written.feedback.iter().map(other))
             .collect(),
@@ -79,42 +80,16 @@ pub fn controller<S: Scalar>(
                 .map(|own| [get(&own.stall_torque), get(&own.no_load_speed)]),
             power: motor.and_then(|own| some(&own.power)),
         },
-        lag: motor
-            .and_then(|own| own.lag.as_ref())
-            .filter(|_| !document.is_rest())
-            .map(|time| Lag {
-                state: NO_BODY,
-                time: get(time),
-            }),
+        lag: motor.and_then(|own| own.lag.as_ref()).map(|time| Lag {
+            state: NO_BODY,
+            time: get(time),
+        }),
     }
 }
 
 /// Whether the integral of a controller holds its joint, as it does at rest.
 pub fn is_held(document: &Document, written: &Written) -> bool {
     document.is_rest() && written.integral.is_some()
-}
-
-/// A controller without effort, which tells its error.
-fn idle<S: Scalar>(coordinate: Coordinate<S>, reference: TimeFunction<S>) -> Controller<S> {
-    Controller {
-        acts: true,
-        feedback: vec![Feedback {
-            coordinate,
-            reference,
-            proportional: S::zero(),
-            derivative: S::zero(),
-        }],
-        integral: None,
-        feed_forward: TimeFunction::constant(S::zero()),
-        weights: Vec::new(),
-        limits: Limits {
-            ratio: S::one(),
-            effort: None,
-            line: None,
-            power: None,
-        },
-        lag: None,
-    }
 }
 
 /// The drives by which integrals hold a joint at rest.
@@ -137,6 +112,28 @@ pub fn held_at_rest<S: Scalar>(
         }
     }
     all
+}
+
+/// Adds the rotors of motors to a model.
+pub fn add_rotors<S: Scalar>(document: &Document, assembly: &Assembly<S>, model: &mut Model<S>) {
+    for (name, load) in &document.loads {
+        let Load::Controller(own) = load else {
+            continue;
+        };
+        let Some(motor) = &own.motor else { continue };
+        if let (Some(inertia), Some(on), Some(dof)) =
+            (&motor.rotor_inertia, &own.joint, controlled(document, own))
+        {
+            let ratio = assembly.quantity(&motor.gear_ratio);
+            let motion = CoupledMotion {
+                joint: model.joints[joint(document, on).0].clone(),
+                dof,
+                factor: S::one(),
+            };
+            let inertia = assembly.quantity(inertia) * ratio * ratio;
+            model.add_coordinate(&format!("{name}, rotor"), &motion, inertia);
+        }
+    }
 }
 
 fn coordinate<S: Scalar>(
@@ -203,8 +200,13 @@ pub(super) fn described(model: &Model<f64>) -> Vec<String> {
         let LoadKind::Controller(own) = &load.kind else {
             continue;
         };
-        let integral = own.integral.as_ref().map(|_| "its integral");
-        let lag = own.lag.as_ref().map(|_| "its lag");
+        let runs = own.regime == Regime::Running;
+        let integral = own
+            .integral
+            .as_ref()
+            .filter(|_| runs)
+            .map(|_| "its integral");
+        let lag = own.lag.as_ref().filter(|_| runs).map(|_| "its lag");
         let states: Vec<&str> = integral.into_iter().chain(lag).collect();
         let cost = match states.len() {
             0 => "no state".to_owned(),

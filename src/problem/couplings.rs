@@ -9,21 +9,28 @@
 //! bevel                  (w·t_1) φ_1 − (w·t_2) φ_2 = const         t_i = n_i × (P − o_i), w = t_1/|t_1|
 //! rack and pinion        s − (u·t) φ = const                       u the direction of the slide s
 //! screw                  s − (l / 2π) φ = const
+//! cam                    y − f(x) = 0                              of any two motions
 //! ```
 //!
 //! with P the place where the teeth meet and o_i a point of the axis, all as placed.
 
+use super::courses::course;
 use super::placement::{Assembly, GROUND};
+use super::starting_angles::starting_angle;
+use crate::functions::whole_turns;
 use crate::math::rotation::matrix;
 use crate::math::scalar::{length, unit};
 use crate::math::{Mat3, Scalar, Vec3};
-use crate::model::{CoupledMotion, DegreeOfFreedom, Joint as ModelJoint, JointFrame, Model};
+use crate::model::{
+    CoupledMotion, DegreeOfFreedom, Joint as ModelJoint, JointFrame, Model, TimeFunction,
+};
 use crate::schema::Document;
 use crate::schema::couplings::{
-    Bevel, Coupling, OfCoupling, RackAndPinion, Relation, Term, Wheels,
+    Bevel, Cam, Coupling, JointMotion, OfCoupling, RackAndPinion, Relation, Term, Wheels,
 };
+use crate::schema::drives::TimeFunction as WrittenCourse;
 use crate::schema::joints::Joint;
-use crate::schema::loads::Motion;
+use crate::schema::loads::{Interpolation, Motion};
 use crate::schema::mechanics::Location;
 use std::collections::{BTreeMap, VecDeque};
 use std::f64::consts::TAU;
@@ -352,6 +359,10 @@ fn motions<S: Scalar>(
                 .map(|(dof, factor)| motion(&own.joint, dof, factor))
                 .collect()
         }
+        Coupling::Cam(own) => [&own.cam, &own.follower]
+            .into_iter()
+            .map(|of| motion(of.joint(), dof(of), S::one()))
+            .collect(),
         Coupling::Relation(own) => {
             let of = |term: &Term| {
                 let (dof, factor) = match (&term.turn, &term.slide) {
@@ -384,7 +395,10 @@ fn factors<S: Scalar>(
             let size = if second.re() < 0.0 { -second } else { second };
             return Some([first, size * sense]);
         }
-        Coupling::RackAndPinion(_) | Coupling::Screw(_) | Coupling::Relation(_) => return None,
+        Coupling::RackAndPinion(_)
+        | Coupling::Screw(_)
+        | Coupling::Relation(_)
+        | Coupling::Cam(_) => return None,
     };
     let [first, second] = given?;
     let parallel = a.axis.dot(&b.axis).re().signum();
@@ -401,21 +415,94 @@ pub(super) struct Followed<S> {
     pub axis: Vec3<S>,
 }
 
-/// Couples the bodies of a model as they are placed, up to a `miss` of each relation: their motions.
+/// The degree of freedom of a motion.
+fn dof(of: &JointMotion) -> DegreeOfFreedom {
+    match of {
+        JointMotion::Turn(_) => DegreeOfFreedom::Rotation,
+        JointMotion::Slide(_) => DegreeOfFreedom::Translation,
+    }
+}
+
+/// By how much the placement misses the constant of a relation that has one.
+fn miss<S: Scalar>(
+    assembly: &Assembly<S>,
+    relation: &Relation,
+    placed: impl Fn(&str, DegreeOfFreedom) -> S,
+) -> S {
+    let Some(constant) = &relation.constant else {
+        return S::zero();
+    };
+    let (turn, slide) = (DegreeOfFreedom::Rotation, DegreeOfFreedom::Translation);
+    let of = |term: &Term| {
+        let both = [(&term.turn, turn), (&term.slide, slide)];
+        let own = both
+            .into_iter()
+            .find_map(|(own, dof)| Some((own.as_ref()?, dof)));
+        own.map_or(S::zero(), |(factor, dof)| {
+            assembly.quantity(factor) * placed(&term.joint, dof)
+        })
+    };
+    let terms = relation.terms.iter();
+    let placed = terms.fold(S::zero(), |sum, term| sum + of(term));
+    assembly.quantity(constant) - placed
+}
+
+/// The profile of a cam between motions that count from the placement.
+fn profile<S: Scalar>(
+    assembly: &Assembly<S>,
+    cam: &Cam,
+    placed: impl Fn(&str, DegreeOfFreedom) -> S,
+) -> TimeFunction<S> {
+    let own = &cam.profile;
+    let written = WrittenCourse::Table(
+        &own.at,
+        &own.values,
+        Some(own.interpolation.unwrap_or(Interpolation::Spline)),
+    );
+    let [from, start] = [&cam.cam, &cam.follower].map(|of| placed(of.joint(), dof(of)));
+    course(assembly, written).since(from).shifted(-start)
+}
+
+/// The angle or displacement of a joint as placed, as functions measure it.
+fn placed<S: Scalar>(
+    (document, assembly): (&Document, &Assembly<S>),
+    model: &Model<S>,
+    name: &str,
+    dof: DegreeOfFreedom,
+) -> S {
+    let joint = document.joints.get_index_of(name);
+    let place = model.place_of(&model.joints[joint.expect("joints are checked")], dof);
+    match dof {
+        DegreeOfFreedom::Translation => place,
+        DegreeOfFreedom::Rotation => {
+            let first = starting_angle(document, assembly, name);
+            let first = first.map_or(0.0, |first| whole_turns(first - place.re()));
+            place + first
+        }
+    }
+}
+
+/// Couples the bodies of a model as they are placed: their motions.
 pub(super) fn couple<S: Scalar>(
     document: &Document,
     assembly: &Assembly<S>,
     model: &mut Model<S>,
-    miss: impl Fn(&Model<S>, &Relation) -> S,
 ) -> Vec<Vec<Followed<S>>> {
     let one = |(name, coupling): (&String, &Coupling)| {
         let motions = motions(document, assembly, model, coupling);
         let motions = motions.expect("a coupling has its motions, which is checked");
-        let miss = match coupling {
-            Coupling::Relation(relation) => miss(model, relation),
-            _ => S::zero(),
+        let placed = |joint: &str, dof| placed((document, assembly), model, joint, dof);
+        let joints = match (coupling, &motions[..]) {
+            (Coupling::Cam(own), [cam, follower]) => {
+                let profile = profile(assembly, own, placed);
+                model.add_cam(name, [cam, follower], profile)
+            }
+            (Coupling::Relation(own), _) => {
+                let miss = miss(assembly, own, placed);
+                model.couple(name, &motions, miss)
+            }
+            _ => model.couple(name, &motions, S::zero()),
         };
-        let joints = model.couple(name, &motions, miss);
         let followed = |(motion, joint): (&CoupledMotion<S>, usize)| Followed {
             joint,
             dof: motion.dof,
@@ -439,6 +526,9 @@ pub(super) fn moved(coupling: &Coupling) -> Vec<(&String, Motion)> {
             vec![(&own.pinion, Motion::Turn), (&own.rack, Motion::Slide)]
         }
         Coupling::Screw(own) => vec![(&own.joint, Motion::Turn), (&own.joint, Motion::Slide)],
+        Coupling::Cam(own) => [&own.cam, &own.follower]
+            .map(|of| (of.joint(), of.motion()))
+            .into(),
         Coupling::Relation(own) => {
             let motion = |term: &Term| match term.turn {
                 Some(_) => Motion::Turn,
@@ -480,7 +570,14 @@ pub(super) fn described(document: &Document, model: &Model<f64>) -> Vec<String> 
         });
         let terms: Vec<String> = terms.collect();
         let (key, follows) = (coupling.key(), word(last));
-        all.push(format!("{name} ({key}): {follows} = {}", terms.join(" + ")));
+        let by = match coupling {
+            Coupling::Cam(own) => {
+                let (of, count) = (others.iter().map(word), own.profile.at.len());
+                format!("f({}), of {count} points", of.collect::<String>())
+            }
+            _ => terms.join(" + "),
+        };
+        all.push(format!("{name} ({key}): {follows} = {by}"));
     }
     all
 }

@@ -308,6 +308,11 @@ fn cannot_assemble(failure: &AssemblyFailure) -> Finding {
              springs that hold alike in all directions",
             "set \"gravity\" to [0, 0, 0] if it is across the axis",
         ),
+        AssemblyFailure::TooWeak { load, .. } => (
+            join("/loads", load),
+            "a motor that holds the machine at rest",
+            "raise its limits or its gear ratio, or support the machine",
+        ),
         AssemblyFailure::NoModes { .. } => (
             "/functions".to_owned(),
             "a stable rest, and as many modes as functions ask for",

@@ -1,7 +1,7 @@
 //! The map from a design to a scene, analytic in the design.
 
 use super::aggregates::rho_of;
-use super::controllers::turned;
+use super::controllers::{add_rotors, turned};
 use super::couplings;
 use super::flexible::{FlexibleBodies, HeldPlace};
 use super::loads::stopped;
@@ -18,7 +18,6 @@ use crate::math::{Scalar, Vec3};
 use crate::model::{DegreeOfFreedom, Mobility, Model, RigidBody, Role};
 use crate::quantity::{Vector, vector};
 use crate::schema::Document;
-use crate::schema::couplings::{Relation, Term};
 use crate::schema::events::When;
 use crate::schema::flexible::Start;
 use crate::schema::functions::OfMotion;
@@ -27,10 +26,10 @@ use crate::schema::mechanics::{Body, Shape};
 use crate::schema::modes::DampingRatio;
 use crate::schema::statics::Frequency;
 use crate::structures::modes::BEYOND;
+use crate::system::Numbering;
 use crate::system::equilibrium::{Follow, Request, Turning, Vibrations, WantedModes, settle};
 use crate::system::failure::AssemblyFailure;
 use crate::system::placement::guess;
-use crate::system::{BodyMotion, Numbering, measures};
 
 /// Default gravity \[m/s²\].
 pub const GRAVITY: [f64; 3] = [0.0, -9.81, 0.0];
@@ -82,8 +81,8 @@ pub fn with_places<S: Scalar>(
         followed: followed(document),
         x,
     };
-    let missed = |model: &Model<S>, own: &Relation| miss(&builder, model, own);
-    builder.coupled = couplings::couple(document, &assembly, &mut model, missed);
+    builder.coupled = couplings::couple(document, &assembly, &mut model);
+    add_rotors(document, &assembly, &mut model);
     count_turns(document, &builder, &mut model);
     model.add_states();
     // Later phases begin as those before them end.
@@ -206,33 +205,6 @@ pub(super) fn turning<S: Scalar>(document: &Document, x: &[S]) -> Option<Turning
     })
 }
 
-/// By how much the placement misses the constant of a relation that has one.
-fn miss<S: Scalar>(builder: &FunctionBuilder<S>, model: &Model<S>, relation: &Relation) -> S {
-    let Some(constant) = &relation.constant else {
-        return S::zero();
-    };
-    let numbering = Numbering::new(model);
-    let (q, v) = guess(model);
-    let mut bodies = Vec::new();
-    BodyMotion::all(&numbering, &q, &v, &mut bodies);
-    let placed = |term: &Term| match (&term.turn, &term.slide) {
-        (Some(factor), _) => {
-            let rotation = builder.joint_angle(&term.joint);
-            let twist = rotation.angle(&numbering, &q);
-            let angle = twist + rotation.first_turns(twist.re());
-            builder.assembly.quantity(factor) * angle
-        }
-        (None, Some(factor)) => {
-            let joint = &model.joints[builder.joint(&term.joint)];
-            builder.assembly.quantity(factor) * measures::slide(joint, &bodies)
-        }
-        (None, None) => S::zero(),
-    };
-    let terms = relation.terms.iter();
-    let placed = terms.fold(S::zero(), |sum, term| sum + placed(term));
-    builder.assembly.quantity(constant) - placed
-}
-
 /// Gives torsion springs, stops of angles and controllers counters of turns, which start as the angles of their joints do.
 fn count_turns<S: Scalar>(document: &Document, builder: &FunctionBuilder<S>, model: &mut Model<S>) {
     let numbering = Numbering::new(model);
@@ -308,7 +280,7 @@ fn start<S: Scalar>(
         }
         // Rates of joints move those that are coupled with them.
         let mut coupled = moved.clone();
-        couplings::couple(document, assembly, &mut coupled, |_, _| S::zero());
+        couplings::couple(document, assembly, &mut coupled);
         start_rates::set(&starts.coupled(&coupled), &mut coupled)?;
         for (body, found) in moved.bodies.iter_mut().zip(&coupled.bodies) {
             body.velocity = found.velocity;

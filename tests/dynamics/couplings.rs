@@ -19,7 +19,7 @@ fn hinge(between: [&str; 2], at: [f64; 3]) -> Value {
     json!({"revolute": {"between": between, "at": at, "axis": [0, 0, 1]}})
 }
 
-fn close(found: f64, exact: f64, tolerance: f64, what: &str) {
+pub fn close(found: f64, exact: f64, tolerance: f64, what: &str) {
     let off = (found - exact).abs();
     assert!(
         off <= tolerance * exact.abs().max(1e-3),
@@ -458,7 +458,7 @@ fn methods_agree_and_energy_is_kept() {
 }
 
 /// A document whose vectors are turned by a rotation matrix, and mirrored in a plane if it is not proper.
-fn turned(document: &Value, matrix: &[[f64; 3]; 3]) -> Value {
+pub fn turned(document: &Value, matrix: &[[f64; 3]; 3]) -> Value {
     let apply = |x: &Value| -> Value {
         let x: Vec<f64> = x
             .as_array()

@@ -12,7 +12,9 @@ use flexbody_mathematics::math::scalar::COMPLEX_STEP;
 use flexbody_mathematics::math::{Complex64, Parameters, Scalar};
 use flexbody_mechanics::integrate::implicit::ggl::{Equations, StepState};
 use flexbody_mechanics::model::Interpolation;
-use flexbody_mechanics::model::controller::{Controller, Coordinate, Feedback, Limits, Weight};
+use flexbody_mechanics::model::controller::{
+    Controller, Coordinate, Feedback, Limits, Regime, Weight,
+};
 use flexbody_mechanics::model::{
     Axes, Cable, CablePoint, Contact, DegreeOfFreedom, ForceTable, JointKind, Load, LoadKind,
     Model, NormalLaw, Smoothness, Surface, TimeFunction,
@@ -219,7 +221,7 @@ fn controllers(body_b: Option<usize>, numbers: &mut Numbers) -> Vec<(JointKind, 
                 derivative: 0.4,
             };
             let own = Controller {
-                acts: true,
+                regime: Regime::Running,
                 feedback: vec![
                     feedback(coordinate, harmonic(), 0.9),
                     feedback(other, table(), 0.3),

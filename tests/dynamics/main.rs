@@ -11,6 +11,7 @@ mod reference;
 mod allocations;
 mod bushings;
 mod cables;
+mod cams;
 mod checkpoints;
 mod closing_joints;
 mod conserves;

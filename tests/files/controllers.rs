@@ -208,7 +208,7 @@ fn arm(own: Family, method: Value) -> Value {
                 "joint": "rail", "reference": {"harmonic": {"amplitude": 0.1 * u, "frequency": 0.9, "phase": 0.2}},
                 "proportional": 120, "derivative": 40, "feed_forward": 3.0 * f,
                 "feedback": [{"joint": "shoulder", "proportional": 5.0 * f, "derivative": 1.0 * f, "reference": 0.1}],
-                "motor": {"torque": 60.0 * f, "gear_ratio": 1.2}
+                "motor": {"torque": 60.0 * f, "gear_ratio": 1.2, "rotor_inertia": 0.8}
             }}),
         ),
         (
@@ -220,7 +220,7 @@ fn arm(own: Family, method: Value) -> Value {
                     {"body": "upper", "mass": 1.9}, {"body": "fore", "point": [0.05 * u, 0.02 * u * own.mirror, 0], "mass": 1.1}
                 ],
                 "motor": {
-                    "torque": 7.0 * m, "gear_ratio": 5, "lag": 0.03, "power": 60.0 * m,
+                    "torque": 7.0 * m, "gear_ratio": 5, "lag": 0.03, "power": 60.0 * m, "rotor_inertia": 0.01 * m,
                     "curve": {"stall_torque": 9.0 * m, "no_load_speed": 20}
                 }
             }}),
@@ -291,6 +291,8 @@ fn variables() -> Value {
         "torque": positive("shoulder/controller/motor/torque"),
         "ratio": positive("shoulder/controller/motor/gear_ratio"),
         "lag": positive("shoulder/controller/motor/lag"),
+        "rotor": positive("shoulder/controller/motor/rotor_inertia"),
+        "rail rotor": positive("rail/controller/motor/rotor_inertia"),
         "power": positive("shoulder/controller/motor/power"),
         "stall": positive("shoulder/controller/motor/curve/stall_torque"),
         "speed": positive("shoulder/controller/motor/curve/no_load_speed"),
@@ -489,9 +491,132 @@ fn vibrations_about_rest_are_those_of_the_closed_loop() {
     assert_near(found[1], speed / std::f64::consts::TAU, 1e-9);
     assert_near(found[2], 3.0 / (2.0 * about * speed), 1e-9);
     gradients_are_exact(&parsed(&file), &json!("modes"));
-    file["loads"]["servo"]["controller"]["integral"] = json!(4);
-    let told = fault(&file);
-    assert!(told.contains("a state of a controller"), "{told}");
+}
+
+/// About rest the states of controllers move with the machine: an integral with its anti-windup, a lag, and a motor near its
+/// limit, whose gain is less there.
+#[test]
+fn vibrations_about_rest_have_states() {
+    let about = 2.0 * (1.0 / 3.0 + 1e-4 / 4.0);
+    let (p, d, k, lag, wind, most) = (80.0, 3.0, 50.0, 0.04, 0.3, 12.0);
+    let reference = 0.3_f64;
+    // The stiffness of the weight.
+    let weight = 9.81 * reference.sin();
+    let torque = 9.81 * reference.cos();
+    let gain = (1.0 - (torque / most).powi(8)).powf(9.0 / 8.0);
+    assert!(gain < 0.9, "{gain}");
+    for (with_lag, wound) in [(false, false), (true, false), (false, true), (true, true)] {
+        let mut own = json!({"reference": reference, "proportional": p, "derivative": d, "integral": k,
+                             "motor": {"torque": most}});
+        if with_lag {
+            own["motor"]["lag"] = json!(lag);
+        }
+        if wound {
+            own["anti_windup"] = json!(wind);
+        }
+        let mut file = held(own);
+        file["functions"] =
+            json!({"f": {"frequency": {"mode": 1}}, "z": {"damping_ratio": {"mode": 1}}});
+        let at = |path: &str| json!({"path": format!("/loads/servo/controller/{path}"), "lower": 0.001, "upper": 900});
+        file["variables"]["p"] = at("proportional");
+        file["variables"]["d"] = at("derivative");
+        file["variables"]["k"] = at("integral");
+        file["variables"]["most"] = at("motor/torque");
+        if with_lag {
+            file["variables"]["lag"] = at("motor/lag");
+        }
+        if wound {
+            file["variables"]["wind"] = at("anti_windup");
+        }
+        let found = values(&file);
+        // States: the angle, its rate, the integral, the torque.
+        let demand = [-p, -d, 1.0];
+        let excess = if wound { (gain - 1.0) / wind } else { 0.0 };
+        let integral = [
+            -k + excess * demand[0],
+            excess * demand[1],
+            excess * demand[2],
+            0.0,
+        ];
+        let (direct, held) = match with_lag {
+            true => (0.0, 1.0),
+            false => (gain, 0.0),
+        };
+        let rows = [
+            [0.0, 1.0, 0.0, 0.0],
+            [
+                (direct * demand[0] + weight) / about,
+                direct * demand[1] / about,
+                direct * demand[2] / about,
+                held / about,
+            ],
+            integral,
+            [
+                gain * demand[0] / lag,
+                gain * demand[1] / lag,
+                gain * demand[2] / lag,
+                -1.0 / lag,
+            ],
+        ];
+        let matrix = DMatrix::from_fn(4, 4, |i, k| rows[i][k]);
+        let poles = matrix.complex_eigenvalues();
+        let oscillates = poles.iter().filter(|s| s.im > 1e-9);
+        let pole = oscillates
+            .min_by(|a, b| a.norm().total_cmp(&b.norm()))
+            .expect("an oscillation");
+        assert_near(found[0], pole.im / std::f64::consts::TAU, 1e-8);
+        assert_near(found[1], -pole.re / pole.norm(), 1e-8);
+        gradients_are_exact(&parsed(&file), &json!([with_lag, wound]));
+        // Those of the motion that begins with this rest.
+        file["functions"]["told"] = file["functions"]["f"].clone();
+        assert_eq!(values(&file)[2], found[0]);
+    }
+}
+
+/// At rest a motor that its limits do not let hold the machine is told.
+#[test]
+fn weak_motors_are_told_at_rest() {
+    let own = json!({"reference": 0.3, "proportional": 80, "integral": 5, "motor": {"torque": 9}});
+    let told = fault(&held(own.clone()));
+    for words in ["/loads/servo", "9.371", "a motor that holds the machine"] {
+        assert!(told.contains(words), "{told}");
+    }
+    let mut strong = own;
+    strong["motor"]["gear_ratio"] = json!(2);
+    assert_near(values(&held(strong))[1], 9.81 * 0.3_f64.cos(), 1e-10);
+}
+
+/// A rotor is felt with the square of its gear, by motors of joints that turn and slide; it has no weight, and its energy is
+/// that of the machine.
+#[test]
+fn rotors_are_felt_through_their_gears() {
+    let (inertia, ratio) = (0.002, 9.0);
+    let all = ABOUT + inertia * ratio * ratio;
+    let own =
+        json!({"feed_forward": 2.5, "motor": {"gear_ratio": ratio, "rotor_inertia": inertia}});
+    let mut file = disk(own, 1.3);
+    file["functions"]["energy"] = final_of(json!({"energy": "kinetic"}));
+    file["functions"]["work"] = json!({"integral": {"power": {"load": "servo"}}});
+    file["variables"]["rotor"] =
+        json!({"path": "/loads/servo/controller/motor/rotor_inertia", "lower": 0, "upper": 1});
+    file["variables"]["ratio"] =
+        json!({"path": "/loads/servo/controller/motor/gear_ratio", "lower": 1, "upper": 20});
+    let found = values(&file);
+    let rate = 2.5 * 1.3 / all;
+    assert_near(found[0], 0.5 * rate * 1.3, 1e-9);
+    assert_near(found[1], rate, 1e-9);
+    assert_near(found[4], 0.5 * all * rate * rate, 1e-9);
+    assert_near(found[4], found[5], 1e-8);
+    gradients_are_exact(&parsed(&file), &json!("rotor"));
+    // In vibrations about rest.
+    let own = json!({"reference": 0.3, "proportional": 80, "motor": {"gear_ratio": ratio, "rotor_inertia": inertia}});
+    let mut file = held(own);
+    file["functions"] = json!({"angle": final_of(json!({"angle": {"joint": "pin"}})), "f": {"frequency": {"mode": 1}}});
+    let found = values(&file);
+    let about = 2.0 * (1.0 / 3.0 + 1e-4 / 4.0) + inertia * ratio * ratio;
+    let speed = ((80.0 - 9.81 * found[0].sin()) / about).sqrt();
+    assert_near(found[1], speed / std::f64::consts::TAU, 1e-9);
+    gradients_are_exact(&parsed(&file), &json!("rotor at rest"));
 }
 
 /// A drive follows an S-curve within its limits.

@@ -3,6 +3,7 @@
 use super::instant::EnergyPart;
 use super::snapshot::{Snapshot, SnapshotCotangent};
 use crate::math::{Scalar, Vec3};
+use crate::model::Role;
 use crate::system::bodies::add6;
 use crate::system::loads::LoadCotangent;
 use crate::system::{flexible, loads};
@@ -10,30 +11,23 @@ use crate::system::{flexible, loads};
 /// Linear momentum of the model in a snapshot, ground axes \[kg m/s\].
 pub(super) fn momentum<S: Scalar>(at: &Snapshot<S>) -> Vec3<S> {
     let motions = at.motions();
-    let states = at.model.states();
-    let bodies = at.model.bodies.iter().zip(&motions).enumerate();
-    let bodies = bodies.filter(|(i, _)| !states.contains(i));
+    let bodies = at.model.bodies.iter().zip(&motions);
+    let bodies = bodies.filter(|(body, _)| !body.role.is_abstract());
     let own = flexible::held(at.model, &motions).momentum;
-    bodies.fold(own, |sum, (_, (body, motion))| {
-        sum + motion.velocity * body.mass
-    })
+    bodies.fold(own, |sum, (body, motion)| sum + motion.velocity * body.mass)
 }
 
 /// Energy of the model in a snapshot \[J\].
 pub fn energy<S: Scalar>(at: &Snapshot<S>, part: EnergyPart) -> S {
     let mut sum = S::zero();
     let motions = at.motions();
-    let states = at.model.states();
-    for (i, (body, motion)) in at.model.bodies.iter().zip(&motions).enumerate() {
-        if states.contains(&i) {
-            continue;
-        }
-        if part != EnergyPart::Potential {
+    for (body, motion) in at.model.bodies.iter().zip(&motions) {
+        if part != EnergyPart::Potential && body.role != Role::State {
             let linear = motion.velocity.dot(&motion.velocity) * body.mass;
             let angular = motion.omega.dot(&(body.inertia * motion.omega));
             sum += (linear + angular) * 0.5;
         }
-        if part != EnergyPart::Kinetic {
+        if part != EnergyPart::Kinetic && !body.role.is_abstract() {
             sum -= at.model.gravity.dot(&motion.position) * body.mass;
         }
     }
@@ -50,9 +44,8 @@ pub fn energy<S: Scalar>(at: &Snapshot<S>, part: EnergyPart) -> S {
 /// Adds the derivative of `along` · [`momentum`] to the cotangents of the snapshot.
 pub(super) fn pull_momentum(at: &Snapshot<f64>, along: &Vec3<f64>, out: &mut SnapshotCotangent) {
     let motions = at.motions();
-    let states = at.model.states();
     for (i, (body, motion)) in at.model.bodies.iter().zip(&motions).enumerate() {
-        if states.contains(&i) {
+        if body.role.is_abstract() {
             continue;
         }
         let o = at.numbering.velocity(i);
@@ -72,21 +65,17 @@ pub(super) fn pull_energy(
 ) {
     let gravity = at.model.gravity;
     let motions = at.motions();
-    let states = at.model.states();
     for (i, (body, motion)) in at.model.bodies.iter().zip(&motions).enumerate() {
-        if states.contains(&i) {
-            continue;
-        }
         let o = at.numbering.velocity(i);
         let own = &mut out.model.bodies[i];
-        if part != EnergyPart::Potential {
+        if part != EnergyPart::Potential && body.role != Role::State {
             let (velocity, omega) = (&motion.velocity, &motion.omega);
             let (momentum, spin) = (velocity * body.mass, body.inertia * omega);
             add6(&mut out.v[o..], &(momentum * weight), &(spin * weight));
             own.mass += 0.5 * weight * velocity.norm_squared();
             own.inertia += omega * omega.transpose() * (0.5 * weight);
         }
-        if part != EnergyPart::Kinetic {
+        if part != EnergyPart::Kinetic && !body.role.is_abstract() {
             add6(
                 &mut out.y[o..],
                 &(gravity * (-weight * body.mass)),

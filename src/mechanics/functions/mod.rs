@@ -37,6 +37,6 @@ pub use instant::{EnergyPart, Gate, GateSide, Instant, Projectile};
 pub use multipliers::{Reacting, Reactions, RowCotangent, Rows};
 pub use quantity::{Operation, Quantity};
 pub use scene::{Scene, TerminalEvent};
-pub use turning::Rotation;
+pub use turning::{Rotation, whole_turns};
 pub use vibration::{OfVibration, VibrationPart};
 pub use window::{Edge, Reach, Window};

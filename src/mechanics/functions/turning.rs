@@ -180,7 +180,7 @@ fn orientation<S: Scalar>(numbering: &Numbering, q: &[S], body: usize) -> Quat<S
 }
 
 /// The multiple of 2π nearest to an angle.
-fn whole_turns(angle: f64) -> f64 {
+pub fn whole_turns(angle: f64) -> f64 {
     TAU * (angle / TAU).round()
 }
 

@@ -22,7 +22,7 @@ use super::scale::Scale;
 use super::settings::{Settings, Spacing};
 use crate::math::Scalar;
 use crate::model::load::LoadKind;
-use crate::model::{DegreeOfFreedom, ForceTable, Model, NormalLaw, RigidBody};
+use crate::model::{DegreeOfFreedom, ForceTable, Model, NormalLaw, RigidBody, Role};
 use crate::system::{BodyMotion, flexible, loads};
 
 /// Smallest change of energy that can reject a run, relative to X + K.
@@ -72,9 +72,7 @@ impl Stock {
             springs: loads::potential(model, motions, S::zero()).re(),
             ..Self::default()
         };
-        let states = model.states();
-        let bodies = model.bodies.iter().zip(motions).enumerate();
-        for (_, (body, motion)) in bodies.filter(|(i, _)| !states.contains(i)) {
+        for (body, motion) in model.bodies.iter().zip(motions) {
             own.kinetic += kinetic(body, motion);
             own.weights.push(weight(model, body, motion));
         }
@@ -89,13 +87,19 @@ impl Stock {
 }
 
 fn kinetic<S: Scalar>(body: &RigidBody<S>, motion: &BodyMotion<S>) -> f64 {
+    if body.role == Role::State {
+        return 0.0;
+    }
     let (v, omega) = (&motion.velocity, &motion.omega);
     0.5 * (body.mass * v.dot(v) + omega.dot(&(body.inertia * omega))).re()
 }
 
 /// The energy of the weight of a body.
 fn weight<S: Scalar>(model: &Model<S>, body: &RigidBody<S>, motion: &BodyMotion<S>) -> f64 {
-    -(body.mass * model.gravity.dot(&motion.position)).re()
+    match body.role.is_abstract() {
+        true => 0.0,
+        false => -(body.mass * model.gravity.dot(&motion.position)).re(),
+    }
 }
 
 fn elastic<S: Scalar>(model: &Model<S>, motions: &[BodyMotion<S>]) -> f64 {
@@ -108,10 +112,8 @@ fn elastic<S: Scalar>(model: &Model<S>, motions: &[BodyMotion<S>]) -> f64 {
 /// Σ (½ m U² + ½ tr J Ω²) over the rigid bodies.
 fn at_speed<S: Scalar>(model: &Model<S>, scale: &Scale) -> f64 {
     let [speed, spin] = scale.floor;
-    let states = model.states();
-    let bodies = model.bodies.iter().enumerate();
-    let bodies = bodies.filter(|(i, _)| !states.contains(i));
-    let bodies = bodies.map(|(_, body)| {
+    let bodies = model.bodies.iter().filter(|body| !body.role.is_abstract());
+    let bodies = bodies.map(|body| {
         let turning = body.inertia.trace().re() * spin * spin;
         0.5 * (body.mass.re() * speed * speed + turning)
     });
@@ -161,10 +163,8 @@ impl Supply {
         let (mut now, mut weighs) = (0.0, 0.0);
         let mut size = 0.0;
         let mut fell = 0.0;
-        let states = model.states();
-        let bodies = model.bodies.iter().zip(motions).enumerate();
-        let bodies = bodies.filter(|(i, _)| !states.contains(i));
-        for ((_, (body, motion)), then) in bodies.zip(&start.weights) {
+        let bodies = model.bodies.iter().zip(motions);
+        for ((body, motion), then) in bodies.zip(&start.weights) {
             now += kinetic(body, motion);
             let weight = weight(model, body, motion);
             weighs += weight - then;

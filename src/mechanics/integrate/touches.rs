@@ -1,4 +1,4 @@
-//! Contacts that come and go within a step.
+//! Contacts that come and go within a step, and the points of the profiles of cams, at which steps end.
 //!
 //! The error of a step knows nothing of a force that no stage has met. So the bodies are followed over the step by the quintic
 //! through positions q, velocities and accelerations at both ends, Euler parameters likewise:
@@ -9,21 +9,43 @@
 //!
 //! It errs by h⁶/46080 times the sixth derivative: by 2e-5 of the length of what turns by 2 rad in the step. A step that begins and
 //! ends apart and touches between is repeated, and then ends where it is deepest.
+//!
+//! The third derivative of a profile jumps at its points, and each of its values acts near one of them alone. So derivatives in
+//! the values need steps that are no longer than from one point to the next.
 
 use crate::math::Scalar;
 use crate::math::rotation;
-use crate::model::Model;
+use crate::model::{Joint, Model, TimeFunction};
 use crate::system::Numbering;
 use crate::system::bodies::{BodyMotion, positions_of, velocities_of};
 use crate::system::loads::gaps::{Gap, gaps, may_touch};
 
-/// A contact that a step passes over.
+/// A contact that a step passes over, or a point of a profile.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Missed {
-    /// The load.
-    pub load: usize,
-    /// The part of the step after which it is deepest.
+    /// Which.
+    pub over: Over,
+    /// The part of the step after which it is deepest, or at the point.
     pub part: f64,
+}
+
+/// What a step passes over.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Over {
+    /// The contact that is this load.
+    Contact(usize),
+    /// The profile of the cam that is this joint.
+    Profile(usize),
+}
+
+impl Over {
+    /// Its name.
+    pub fn name<S>(self, model: &Model<S>) -> String {
+        match self {
+            Self::Contact(load) => model.loads[load].name.clone(),
+            Self::Profile(joint) => model.joints[joint].name.clone(),
+        }
+    }
 }
 
 /// A state as the quintic needs it: q, q̇ and q̈ by body, its time and its gaps.
@@ -38,16 +60,44 @@ struct End {
 pub struct Touches {
     before: End,
     after: End,
+    cams: Vec<Cam>,
+}
+
+/// A cam: its joint, the body whose coordinate it follows, and the points of its profile.
+struct Cam {
+    joint: usize,
+    body: usize,
+    points: Vec<f64>,
+}
+
+impl Cam {
+    fn all<S: Scalar>(model: &Model<S>) -> Vec<Self> {
+        let one = |(joint, own): (usize, &Joint<S>)| {
+            let modes = own.modes.as_ref()?;
+            let &(body, _) = modes.places.first()?;
+            match modes.profile.as_ref()? {
+                TimeFunction::Table { times, .. } => Some(Self {
+                    joint,
+                    body,
+                    points: times.iter().map(|t| t.re()).collect(),
+                }),
+                _ => None,
+            }
+        };
+        model.joints.iter().enumerate().filter_map(one).collect()
+    }
 }
 
 impl Touches {
-    /// Watches the stops and contacts of a model from its start (q, v, v̇); `None` if it has none.
+    /// Watches the stops and contacts of a model, and its cams if steps are `chosen`, from its start (q, v, v̇); `None` if it
+    /// has none.
     pub fn open<S: Scalar>(
         model: &Model<S>,
         numbering: &Numbering,
-        start: [&[S]; 3],
+        (start, chosen): ([&[S]; 3], bool),
     ) -> Option<Self> {
-        if !model.loads.iter().any(|load| may_touch(&load.kind)) {
+        let cams = if chosen { Cam::all(model) } else { Vec::new() };
+        if cams.is_empty() && !model.loads.iter().any(|load| may_touch(&load.kind)) {
             return None;
         }
         let mut before = End::default();
@@ -55,7 +105,35 @@ impl Touches {
         Some(Self {
             before,
             after: End::default(),
+            cams,
         })
+    }
+
+    /// The point of a profile that comes first of those which the step passes over.
+    fn passed(&self, h: f64) -> Option<Missed> {
+        let one = |cam: &Cam| {
+            let place = |s: f64| self.inside::<f64>(cam.body, h, s).position.x;
+            let ends = [&self.before, &self.after].map(|end| end.bodies[cam.body][0][0]);
+            let [low, high] = [ends[0].min(ends[1]), ends[0].max(ends[1])];
+            let between = cam.points.iter().filter(|x| low < **x && **x < high);
+            let part = |&x: &f64| {
+                let (mut low, mut high) = (0.0, 1.0);
+                let sign = (ends[1] - ends[0]).signum();
+                for _ in 0..HALVES {
+                    let middle = 0.5 * (low + high);
+                    match sign * (place(middle) - x) < 0.0 {
+                        true => low = middle,
+                        false => high = middle,
+                    }
+                }
+                low
+            };
+            let parts = between.map(part).filter(|s| (NEAR..1.0 - NEAR).contains(s));
+            let over = Over::Profile(cam.joint);
+            (parts.min_by(f64::total_cmp)).map(|part| Missed { over, part })
+        };
+        let all = self.cams.iter().filter_map(one);
+        all.min_by(|a, b| a.part.total_cmp(&b.part))
     }
 
     /// The contact that comes first of those which a step of size h to the state (q, v, v̇) passes over.
@@ -67,6 +145,10 @@ impl Touches {
         h: f64,
     ) -> Option<Missed> {
         self.after.set(model, numbering, end, self.before.time + h);
+        let passed = self.passed(h);
+        if passed.is_some() || self.before.gaps.is_empty() {
+            return passed;
+        }
         let mut motions: Vec<BodyMotion<S>> = Vec::new();
         let bodies = 0..numbering.bodies();
         motions.extend(bodies.map(|body| self.inside(body, h, 0.5)));
@@ -153,7 +235,8 @@ impl Touches {
             }
         }
         let part = 0.5 * (low + high);
-        (depth(part) > gap.onset).then_some(Missed { load, part })
+        let over = Over::Contact(load);
+        (depth(part) > gap.onset).then_some(Missed { over, part })
     }
 }
 
@@ -197,6 +280,9 @@ fn joined(x: &crate::math::Vec3<f64>, p: &[f64; 4]) -> [f64; 7] {
 /// Intervals of a step in which the deepest place is looked for, and steps to the best in them: to 1e-9 of the step.
 const INTERVALS: usize = 16;
 const THIRDS: usize = 45;
+/// Halvings to a point of a profile; those nearer to an end of the step than this part of it are left alone.
+const HALVES: usize = 40;
+const NEAR: f64 = 1e-3;
 
 /// The speed between two looks is at most this times the largest of the three.
 const SPEEDS_UP: f64 = 1.5;

@@ -1,9 +1,8 @@
 //! The controllers of a model, and the bodies of their states.
 
-use super::controller::Controller;
+use super::controller::{Controller, Coordinate, Regime};
 use super::{Load, LoadKind, Mobility, Model, RigidBody, Role};
 use crate::math::Scalar;
-use std::ops::Range;
 
 impl<S: Scalar> Model<S> {
     /// The controllers.
@@ -19,15 +18,36 @@ impl<S: Scalar> Model<S> {
         self.controllers().next().is_some()
     }
 
-    /// The bodies whose velocities are states of controllers, which follow each other; empty without.
-    pub fn states(&self) -> Range<usize> {
-        let mut all = self.controllers().flat_map(Controller::states);
-        let first = all.next();
-        let count = 1 + all.count();
-        first.map_or(0..0, |first| first..first + count)
+    /// Whether controllers are settled that have states.
+    pub fn is_settled(&self) -> bool {
+        let settled = |own: &Controller<S>| own.regime == Regime::Settled;
+        self.controllers()
+            .any(|own| settled(own) && own.states().next().is_some())
     }
 
-    /// Gives controllers the bodies of their states, which start with zero.
+    /// Lets settled controllers run: their states can change, and no drives hold the joints that integrals do.
+    pub fn run(&mut self) {
+        for load in &mut self.loads {
+            let LoadKind::Controller(own) = &mut load.kind else {
+                continue;
+            };
+            if own.regime != Regime::Settled {
+                continue;
+            }
+            own.regime = Regime::Running;
+            for state in own.states() {
+                self.bodies[state].mobility = Mobility::carrier(1);
+            }
+            if let (Some(_), Coordinate::Joint { joint, dof, .. }) =
+                (&own.integral, &own.feedback[0].coordinate)
+            {
+                let drives = &mut self.joints[*joint].drives;
+                drives.retain(|drive| drive.dof != *dof);
+            }
+        }
+    }
+
+    /// Gives controllers the bodies of their states, which start with zero. Those of settled ones stay.
     pub fn add_states(&mut self) {
         for Load { name, kind } in &mut self.loads {
             let LoadKind::Controller(own) = kind else {
@@ -41,7 +61,10 @@ impl<S: Scalar> Model<S> {
             for (state, what) in integral.into_iter().chain(lag) {
                 let mut body = RigidBody::massless(format!("{name}, {what}"));
                 body.mass = S::one();
-                body.mobility = Mobility::carrier(1);
+                body.mobility = match own.regime {
+                    Regime::Settled => Mobility::fixed(),
+                    Regime::Running | Regime::Off => Mobility::carrier(1),
+                };
                 body.role = Role::State;
                 *state = self.bodies.len();
                 self.bodies.push(body);

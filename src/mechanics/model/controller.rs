@@ -111,11 +111,23 @@ pub struct Limits<S> {
     pub power: Option<S>,
 }
 
+/// What a controller does.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Regime {
+    /// Its effort acts, and its states change.
+    Running,
+    /// The machine is at rest: a lag has settled, and an integral has the effort of a drive that holds the joint, so that the
+    /// controller adds none.
+    Settled,
+    /// Its effort is zero, and its states stay.
+    Off,
+}
+
 /// A controller with its motor.
 #[derive(Clone, Debug)]
 pub struct Controller<S> {
-    /// Whether it acts. If not, its effort is zero and its states stay.
-    pub acts: bool,
+    /// What it does.
+    pub regime: Regime,
     /// The coordinates that it measures; F acts on the first.
     pub feedback: Vec<Feedback<S>>,
     /// The integral of the first error.
@@ -139,7 +151,7 @@ parameters!(struct Integral { state; gain, tracking });
 parameters!(struct Lag { state; time });
 parameters!(struct Weight { body; point, mass });
 parameters!(struct Limits {; ratio, effort, line, power });
-parameters!(struct Controller { acts; feedback, integral, feed_forward, weights, limits, lag });
+parameters!(struct Controller { regime; feedback, integral, feed_forward, weights, limits, lag });
 
 impl<S> Coordinate<S> {
     /// The joint that is measured and the body that counts its turns, if they are counted.

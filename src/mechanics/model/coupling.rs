@@ -15,11 +15,20 @@
 //! derivative in c_i has the whole angle. Each row is that of a [drive](super::drive) whose course is linear in
 //! coordinates instead of a function of time: the frame on body B turns about e3 or moves along it.
 //! Coordinates are zero at the start.
+//!
+//! A cam is a follower whose motion is a function of the coordinate: with frame B moved by the profile f,
+//!
+//! ```text
+//! y = f(x),   ẏ = f' ẋ,   ÿ = f' ẍ + f'' ẋ²
+//! ```
+//!
+//! The rotor of a motor has a coordinate whose mass is its inertia n² J, seen through a gear of the ratio n. It has neither
+//! weight nor momentum.
 
 use super::drive::DegreeOfFreedom;
 use super::flexible::Modes;
 use super::joint::{Joint, JointFrame, JointKind};
-use super::{Mobility, Model, RigidBody, Role};
+use super::{Mobility, Model, RigidBody, Role, TimeFunction};
 use crate::math::{Mat3, Scalar, Vec3, rotation};
 use std::ops::Range;
 
@@ -79,19 +88,42 @@ impl<S: Scalar> Model<S> {
             return Vec::new();
         };
         let first = self.bodies.len();
-        for (i, motion) in others.iter().enumerate() {
-            let of = &motion.joint.name;
-            let mut carrier = RigidBody::massless(format!("{name}, motion of {of}"));
-            carrier.mobility = Mobility::carrier(1);
-            carrier.role = Role::Coordinate;
-            self.bodies.push(carrier);
-            self.follow(name, motion, S::zero(), vec![(first + i, S::one())]);
+        for motion in others {
+            self.add_coordinate(name, motion, S::zero());
         }
         let follows = others.iter().enumerate();
         let follows = follows.map(|(i, own)| (first + i, -own.factor / last.factor));
         self.follow(name, last, miss / last.factor, follows.collect());
         let added = self.joints.len();
         (added - motions.len()..added).collect()
+    }
+
+    /// Lets a motion follow the profile f of another, which both count from the placement: the joints that are added.
+    pub fn add_cam(
+        &mut self,
+        name: &str,
+        [cam, follower]: [&CoupledMotion<S>; 2],
+        profile: TimeFunction<S>,
+    ) -> Vec<usize> {
+        let first = self.joints.len();
+        let coordinate = self.add_coordinate(name, cam, S::zero());
+        self.follow(name, follower, S::zero(), vec![(coordinate, S::one())]);
+        if let Some(modes) = self.joints.last_mut().and_then(|own| own.modes.as_mut()) {
+            modes.profile = Some(profile);
+        }
+        (first..self.joints.len()).collect()
+    }
+
+    /// Adds a body whose coordinate follows a motion, with an inertia \[kg m² of a rotation, kg of a displacement\]: its index.
+    pub fn add_coordinate(&mut self, name: &str, motion: &CoupledMotion<S>, inertia: S) -> usize {
+        let body = self.bodies.len();
+        let mut own = RigidBody::massless(format!("{name}, motion of {}", motion.joint.name));
+        own.mass = inertia;
+        own.mobility = Mobility::carrier(1);
+        own.role = Role::Coordinate;
+        self.bodies.push(own);
+        self.follow(name, motion, S::zero(), vec![(body, S::one())]);
+        body
     }
 
     /// Adds the row by which a motion, counted from `shift` beyond the placement, follows Σ f_k x_k of coordinates with
@@ -125,6 +157,7 @@ impl<S: Scalar> Model<S> {
                 places: factors.iter().map(|&(carrier, _)| (carrier, 0)).collect(),
                 displacement,
                 rotation: turn,
+                profile: None,
             }),
             ..joint.clone()
         };
@@ -148,7 +181,7 @@ impl<S: Scalar> Model<S> {
 
     /// Where frame A of a joint is in frame B at the placement: its angle about e3 in (−π, π] \[rad\], or how far it is along e3
     /// \[m\].
-    pub(super) fn place_of(&self, joint: &Joint<S>, dof: DegreeOfFreedom) -> S {
+    pub fn place_of(&self, joint: &Joint<S>, dof: DegreeOfFreedom) -> S {
         let a = &self.bodies[joint.body_a];
         let (origin, turned) = match joint.body_b.map(|body| &self.bodies[body]) {
             Some(b) => (b.position, rotation::matrix(&b.orientation)),

@@ -20,6 +20,7 @@
 //! that carries joints, loads or functions is a body without mass as well, its *interface*, held by
 //! a joint of kind `Attachment` (see [`Modes`]).
 
+use super::TimeFunction;
 use super::finite::FiniteElements;
 use super::reduced::ReducedShells;
 pub use super::shapes::{ModalInertia, ModalStiffness, Quadratic, Strain};
@@ -123,6 +124,8 @@ pub struct Modes<S> {
     pub displacement: Vec<Vec3<S>>,
     /// Θ_I.
     pub rotation: Vec<Vec3<S>>,
+    /// The profile f of a cam: a coupled frame shifts or turns by f(Σ q_I N_I) or f(Σ q_I Θ_I).
+    pub profile: Option<TimeFunction<S>>,
 }
 
 /// How many carriers have three coordinates; the others have one.
@@ -196,4 +199,4 @@ parameters!(enum Form { Modal(; modal), Finite(; finite) });
 
 parameters!(struct Modal { sections; inertia, stiffness, damping, viscosity, shells });
 
-parameters!(struct Modes { places; displacement, rotation });
+parameters!(struct Modes { places; displacement, rotation, profile });

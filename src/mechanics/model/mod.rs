@@ -145,10 +145,7 @@ impl<S: Scalar> Model<S> {
 
     /// Whether the position of a body is no place: it counts turns, or is the coordinate of a coupling or a controller.
     pub fn holds_angles(&self, body: usize) -> bool {
-        matches!(
-            self.bodies[body].role,
-            Role::Counter | Role::Coordinate | Role::State
-        )
+        self.bodies[body].role.is_abstract()
     }
 
     /// Gives a load bodies that count the turns of its joints, whose angles start so: one of a torsion spring or a stop; of a
@@ -316,6 +313,7 @@ impl<S: Scalar> Model<S> {
                 places,
                 displacement,
                 rotation,
+                profile: None,
             }),
         }
     }

@@ -18,10 +18,17 @@ pub enum Role {
     Elastic,
     /// The turns of a joint that a load counts.
     Counter,
-    /// The coordinate of a coupling.
+    /// The coordinate of a coupling; its mass is the inertia of a rotor.
     Coordinate,
     /// The state of a controller, which is a velocity.
     State,
+}
+
+impl Role {
+    /// Whether the position of such a body is no place: its mass has neither weight nor momentum.
+    pub fn is_abstract(self) -> bool {
+        matches!(self, Self::Counter | Self::Coordinate | Self::State)
+    }
 }
 
 /// A rigid body. Its reference point is the centre of mass. Its axes are those of the body in the

@@ -10,7 +10,7 @@
 //! and a rod keeps the distance of its points. So no body moves when a joint closes. A drive that comes on goes on from
 //! where its joint is: its course is shifted by a constant.
 
-use super::controller::Coordinate;
+use super::controller::{Coordinate, Regime};
 use super::{Drive, Joint, JointKind, LoadKind, Model, TimeFunction};
 use crate::math::{Mat3, Scalar, Vec3, rotation};
 
@@ -157,7 +157,7 @@ impl<S: Scalar> LoadKind<S> {
             }
             LoadKind::Contact(own) => own.law.stiffness = zero,
             LoadKind::Cable(own) => own.law.stiffness = zero,
-            LoadKind::Controller(own) => own.acts = false,
+            LoadKind::Controller(own) => own.regime = Regime::Off,
         }
     }
 }

@@ -302,6 +302,7 @@ pub fn add_unit_cotangent(numbering: &Numbering, q: &[f64], y: &[f64], out: &mut
 }
 
 /// Inertial minus applied forces M v̇ − f(q, v) of a rigid body: (m (v̇ − g), J ω̇ + ω × J ω).
+/// What is no place has no weight g.
 pub fn force_balance<S: Scalar>(
     body: &RigidBody<S>,
     gravity: &Vec3<S>,
@@ -310,10 +311,11 @@ pub fn force_balance<S: Scalar>(
     alpha: &Vec3<S>,
 ) -> (Vec3<S>, Vec3<S>) {
     let gyroscopic = omega.cross(&(body.inertia * omega));
-    (
-        (acceleration - gravity) * body.mass,
-        body.inertia * alpha + gyroscopic,
-    )
+    let falling = match body.role.is_abstract() {
+        true => *acceleration,
+        false => acceleration - gravity,
+    };
+    (falling * body.mass, body.inertia * alpha + gyroscopic)
 }
 
 /// Derivative of the torque balance in ω: ω̃ J − (J ω)~.
@@ -332,8 +334,11 @@ fn pull_force_balance(
     cot: &mut RigidBody<f64>,
     gravity_cot: &mut Vec3<f64>,
 ) -> Vec3<f64> {
-    cot.mass += psi_r.dot(&(acceleration - gravity));
-    *gravity_cot -= psi_r * body.mass;
+    cot.mass += psi_r.dot(acceleration);
+    if !body.role.is_abstract() {
+        cot.mass -= psi_r.dot(gravity);
+        *gravity_cot -= psi_r * body.mass;
+    }
     let turned = psi_theta.cross(omega);
     cot.inertia += psi_theta * alpha.transpose() + turned * omega.transpose();
     (body.inertia * omega).cross(psi_theta) + body.inertia.tr_mul(&turned)

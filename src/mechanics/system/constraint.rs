@@ -145,7 +145,7 @@ fn local_gradient<S: Scalar>(
 }
 
 /// Derivatives of the rate of a row by the speed of frame B along e3 and by its spin about it, in the axes of the frame.
-fn followed_gradient<S: Scalar>(
+pub(super) fn followed_gradient<S: Scalar>(
     row: ConstraintRow,
     a: &JointSide<S>,
     b: &JointSide<S>,
@@ -174,8 +174,9 @@ pub fn gradient<S: Scalar>(
     let mut out = RowGradient::zero();
     if let Some(undeformed) = &a.undeformed {
         (out.local_force, out.local_torque) = local_gradient(row, a, b, undeformed);
-    } else if b.follows {
-        (out.local_force, out.local_torque) = followed_gradient(row, a, b);
+    } else if let Some(slope) = b.follows {
+        let (force, torque) = followed_gradient(row, a, b);
+        (out.local_force, out.local_torque) = (force * slope, torque * slope);
     }
     (out.force, out.torque_a, out.torque_b) = match row {
         Coincident(k) => {

@@ -100,6 +100,16 @@ pub enum AssemblyFailure {
         /// What is not.
         why: String,
     },
+    /// The motor of a controller whose integral holds a joint at rest.
+    #[error(
+        "at rest \"{load}\" would need an effort of {effort:.6e}, which the limits of its motor do not allow"
+    )]
+    TooWeak {
+        /// Name of the controller.
+        load: String,
+        /// The effort \[N or N m\].
+        effort: f64,
+    },
     /// Rest has no such modes of vibration.
     #[error("no natural frequencies about rest: {why}")]
     NoModes {

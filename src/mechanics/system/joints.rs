@@ -7,7 +7,7 @@ use super::in_motion::InMotion;
 use super::numbering::Numbering;
 use super::reaction::{self, ReactionJacobian};
 use super::rows::RowCotangent;
-use super::side::{JointSide, pull_driven_frame, pull_followed_frame, sides};
+use super::side::{JointSide, curvature_of_cam, pull_driven_frame, pull_followed_frame, sides};
 use crate::math::{Scalar, Vec3};
 use crate::model::{ConstraintRow, Joint, Model, Modes};
 use std::ops::Range;
@@ -182,7 +182,7 @@ pub fn reaction_jacobian<S: Scalar>(
 /// Derivatives of the torques of G(q)ᵀ λ of an attachment in each elastic coordinate, on body A and on
 /// body B, with the place of the coordinate among the velocities; those of the elastic forces in the
 /// rotations are the same numbers, and there are no others. None of a coupled joint: where it is closed its row is linear
-/// in the coordinates and the rotation to first order, sin(x − θ) = 0.
+/// in the coordinates and the rotation to first order, sin(x − θ) = 0, but for the [`curvature`] of a cam.
 pub fn elastic_reactions<S: Scalar>(
     joint: &Joint<S>,
     modes: &Modes<S>,
@@ -207,6 +207,19 @@ pub fn elastic_reactions<S: Scalar>(
             (slot, by_a, turned.b_by_rotation * t)
         })
         .collect()
+}
+
+/// The derivative of the product of a row of a cam and its coordinate's velocity by the coordinate, for the velocity 1, with the
+/// place of the coordinate among the velocities: that of λ G for λ = 1 as well. `None` of other joints.
+pub fn curvature<S: Scalar>(joint: &Joint<S>, at: &InMotion<S>) -> Option<(usize, S)> {
+    let modes = joint.modes.as_ref()?;
+    let curvature = curvature_of_cam(joint.kind, modes, at.motions)?;
+    let ground = BodyMotion::ground();
+    let (a, b) = sides(joint, at.motions, &ground, at.time);
+    let row = joint.rows().next()?;
+    let by_motion = constraint::followed_gradient(row, &a, &b);
+    let mut all = attachment::elastic_gradient(modes, at.numbering, by_motion);
+    all.next().map(|(slot, x)| (slot, x * curvature))
 }
 
 /// Derivative of the rate of one row in the tangent positions of its two bodies.

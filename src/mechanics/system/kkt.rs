@@ -123,6 +123,9 @@ pub fn emit_reaction_jacobian<S: Scalar>(
             }
         }
         let Some(modes) = &joint.modes else { continue };
+        if let (Some((slot, x)), [lambda]) = (joints::curvature(joint, at), lambda) {
+            emit.add(row + slot, column + slot, x * *lambda * scale);
+        }
         for (slot, by_a, by_b) in joints::elastic_reactions(joint, modes, at, lambda) {
             let body_b = joint.body_b.map(|body| (body, by_b));
             for (body, by) in [(joint.body_a, by_a)].into_iter().chain(body_b) {

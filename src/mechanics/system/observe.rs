@@ -10,7 +10,7 @@ use super::numbering::Numbering;
 use super::redundancy::smallest_multipliers;
 use super::side::sides;
 use crate::math::Vec3;
-use crate::model::Model;
+use crate::model::{Model, Role};
 
 /// Conserved quantities and constraint drift of a state.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -59,14 +59,15 @@ pub fn observe(
         position_drift: 0.0,
         velocity_drift: 0.0,
     };
-    let states = model.states();
-    for (i, (body, motion)) in model.bodies.iter().zip(&motions).enumerate() {
-        if states.contains(&i) {
-            continue;
-        }
+    for (body, motion) in model.bodies.iter().zip(&motions) {
         let momentum = motion.velocity * body.mass;
         let spin = body.inertia * motion.omega;
-        seen.kinetic += 0.5 * (momentum.dot(&motion.velocity) + spin.dot(&motion.omega));
+        if body.role != Role::State {
+            seen.kinetic += 0.5 * (momentum.dot(&motion.velocity) + spin.dot(&motion.omega));
+        }
+        if body.role.is_abstract() {
+            continue;
+        }
         seen.potential -= body.mass * model.gravity.dot(&motion.position);
         seen.momentum += momentum;
         seen.angular_momentum += motion.position.cross(&momentum) + motion.rotation * spin;

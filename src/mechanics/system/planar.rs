@@ -159,7 +159,7 @@ impl<S: Scalar> PlanarJoints<S> {
     pub fn of(model: &Model<S>) -> Option<Self> {
         let mut plane = None;
         let mut planes = Vec::with_capacity(model.bodies.len() + 1);
-        for (i, body) in model.bodies.iter().enumerate() {
+        for body in &model.bodies {
             // No joint holds it.
             if matches!(body.role, Role::Counter | Role::State) {
                 planes.push(BodyPlane {

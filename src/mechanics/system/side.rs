@@ -13,7 +13,7 @@ use super::frame_motion::FrameMotion;
 use super::marker::MarkerKinematics;
 use super::numbering::Numbering;
 use crate::math::{Scalar, Vec3};
-use crate::model::{DegreeOfFreedom, Joint, JointFrame, Modes};
+use crate::model::{DegreeOfFreedom, Joint, JointFrame, JointKind, Modes};
 
 /// One side of a joint.
 #[derive(Clone, Debug)]
@@ -26,8 +26,8 @@ pub struct JointSide<'a, S> {
     pub moving: Option<FrameMotion<S>>,
     /// The frame on the undeformed body, if the body deforms under it.
     pub undeformed: Option<JointFrame<S>>,
-    /// Whether the frame follows coordinates of a coupling.
-    pub follows: bool,
+    /// The derivative of the motion of a frame that follows coordinates of a coupling, by their sum: 1, or f' of a cam.
+    pub follows: Option<S>,
 }
 
 impl<'a, S: Scalar> JointSide<'a, S> {
@@ -38,7 +38,7 @@ impl<'a, S: Scalar> JointSide<'a, S> {
             frame,
             moving: None,
             undeformed: None,
-            follows: false,
+            follows: None,
         }
     }
 
@@ -82,10 +82,11 @@ pub fn sides<'a, S: Scalar>(
     let mut a = JointSide::fixed(&motions[joint.body_a], joint.frame_a);
     match &joint.modes {
         Some(modes) if joint.is_coupled() => {
-            let (frame, moving) = moved_frame(&joint.frame_b, &followed(modes, motions));
+            let (course, slope) = followed(joint.kind, modes, motions);
+            let (frame, moving) = moved_frame(&joint.frame_b, &course);
             b.frame = frame;
             b.moving = Some(moving);
-            b.follows = true;
+            b.follows = Some(slope);
         }
         Some(modes) => {
             let (frame, moving) = deformed_frame(&joint.frame_a, modes, motions);
@@ -120,13 +121,56 @@ fn prescribed<S: Scalar>(joint: &Joint<S>, time: S) -> Course<S> {
     Course { turn, slide }
 }
 
-/// The motions that the coordinates of a coupling give.
-fn followed<S: Scalar>(modes: &Modes<S>, motions: &[BodyMotion<S>]) -> Course<S> {
+/// The sums of the coordinates of a coupling with their factors.
+fn summed<S: Scalar>(modes: &Modes<S>, motions: &[BodyMotion<S>]) -> Course<S> {
     let sums = attachment::parts().map(|part| attachment::sums(modes, motions, part));
     Course {
         turn: sums.map(|(_, turn)| turn.z),
         slide: sums.map(|(slide, _)| slide.z),
     }
+}
+
+/// The motions that the coordinates of a coupling give, and their derivative by the sum: 1, or f' of a cam.
+fn followed<S: Scalar>(
+    kind: JointKind,
+    modes: &Modes<S>,
+    motions: &[BodyMotion<S>],
+) -> (Course<S>, S) {
+    let mut course = summed(modes, motions);
+    let Some(profile) = &modes.profile else {
+        return (course, S::one());
+    };
+    let own = course.of(kind);
+    let [x, rate, acceleration, virtual_rate] = *own;
+    let [value, slope, curvature, _] = profile.derivatives(x);
+    *own = [
+        value,
+        slope * rate,
+        slope * acceleration + curvature * rate * rate,
+        slope * virtual_rate,
+    ];
+    (course, slope)
+}
+
+impl<S> Course<S> {
+    /// The part in which a coupled joint moves.
+    fn of(&mut self, kind: JointKind) -> &mut [S; 4] {
+        match kind {
+            JointKind::Coupled(DegreeOfFreedom::Translation) => &mut self.slide,
+            _ => &mut self.turn,
+        }
+    }
+}
+
+/// The derivative f'' of the slope of a cam at the sum of its coordinates; `None` of other couplings.
+pub fn curvature_of_cam<S: Scalar>(
+    kind: JointKind,
+    modes: &Modes<S>,
+    motions: &[BodyMotion<S>],
+) -> Option<S> {
+    let profile = modes.profile.as_ref()?;
+    let [x, ..] = *summed(modes, motions).of(kind);
+    Some(profile.derivatives(x)[2])
 }
 
 /// A frame on body B that is moved so, and its motion.
@@ -241,14 +285,30 @@ pub fn pull_followed_frame(
     states: (Option<&mut [f64]>, Option<&mut [f64]>),
     own: &mut Joint<f64>,
 ) {
-    let course = followed(modes, motions);
-    let by = pull_moved_frame(
+    let (course, _) = followed(joint.kind, modes, motions);
+    let mut by = pull_moved_frame(
         &joint.frame_b,
         &course,
         by_frame,
         by_motion,
         &mut own.frame_b,
     );
+    if let Some(profile) = &modes.profile {
+        let [x, rate, acceleration, virtual_rate] = *summed(modes, motions).of(joint.kind);
+        let [_, slope, curvature, _] = profile.derivatives(x);
+        let by = by.of(joint.kind);
+        let [value, by_rate, by_acceleration, by_virtual] = *by;
+        let by_slope = by_rate * rate + by_acceleration * acceleration + by_virtual * virtual_rate;
+        let weights = [value, by_slope, by_acceleration * rate * rate];
+        let to = own.modes.as_mut().and_then(|own| own.profile.as_mut());
+        let to = to.expect("a cotangent has the profile of its joint");
+        *by = [
+            profile.pull_back(x, weights, to),
+            by_rate * slope + 2.0 * by_acceleration * curvature * rate,
+            by_acceleration * slope,
+            by_virtual * slope,
+        ];
+    }
     let along = |x: f64| Vec3::new(0.0, 0.0, x);
     let parts = std::array::from_fn(|i| (along(by.slide[i]), along(by.turn[i])));
     attachment::pull_coordinates(modes, (numbering, motions), &parts, states, own);

@@ -86,12 +86,10 @@ impl Checker<'_> {
             )
         };
         let modes = document.told_modes().is_some() || document.functions.values().any(vibrates);
-        if modes && (lag || own.integral.is_some()) {
-            let found = "a state of a controller, beside modes of a machine at rest";
+        if modes && document.turning.is_some() && (lag || own.integral.is_some()) {
+            let found = "a state of a controller, beside modes of a machine that turns";
             let expected = "a controller without \"integral\" and \"lag\"";
-            let hint = "in a motion \"frequency\" and \"damping_ratio\" at an instant are those of the closed loop, states included";
-            let finding = Finding::new(pointer, found, expected).of_key();
-            self.fault(finding.hint(Some(hint.to_owned())));
+            self.fault(Finding::new(pointer, found, expected).of_key());
         }
     }
 

@@ -7,7 +7,7 @@ use crate::model::{DegreeOfFreedom, JointKind};
 use crate::placement::GROUND;
 use crate::pointer::{advice, join};
 use crate::quantity::Quantity;
-use crate::schema::couplings::{Coupling, OfCoupling, Relation, Wheels};
+use crate::schema::couplings::{Cam, Coupling, JointMotion, OfCoupling, Relation, Wheels};
 use crate::schema::joints::Joint;
 use crate::schema::mechanics::Location;
 
@@ -52,7 +52,31 @@ impl Checker<'_> {
                 self.loaded_joint(pointer, &own.joint, &[JointKind::Cylindrical]);
             }
             Coupling::Relation(own) => self.relation(pointer, own),
+            Coupling::Cam(own) => self.cam(pointer, own),
         }
+    }
+
+    fn cam(&mut self, pointer: &str, own: &Cam) {
+        for (key, of) in [("cam", &own.cam), ("follower", &own.follower)] {
+            let place = join(pointer, key);
+            match of {
+                JointMotion::Turn(joint) => {
+                    self.moving_joint(&join(&place, "turn"), joint, DegreeOfFreedom::Rotation)
+                }
+                JointMotion::Slide(joint) => {
+                    self.moving_joint(&join(&place, "slide"), joint, DegreeOfFreedom::Translation)
+                }
+            }
+        }
+        if own.cam == own.follower {
+            let found = "the motion on which the profile depends";
+            self.fault(Finding::new(join(pointer, "follower"), found, "another motion").of_key());
+        }
+        self.rising(
+            &join(pointer, "profile"),
+            ("at", &own.profile.at),
+            ("values", &own.profile.values),
+        );
     }
 
     fn meeting(&mut self, pointer: &str, at: &Location) {

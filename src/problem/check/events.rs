@@ -5,6 +5,7 @@ use crate::finding::Finding;
 use crate::pointer::{advice, join};
 use crate::schema::couplings::Coupling;
 use crate::schema::events::{Event, When};
+use crate::schema::loads::Load;
 
 impl Checker<'_> {
     pub(super) fn events(&mut self) {
@@ -130,6 +131,9 @@ impl Checker<'_> {
             }
             let couples = |coupling: &Coupling| match coupling {
                 Coupling::Screw(own) => own.joint == name,
+                Coupling::Cam(own) => [&own.cam, &own.follower]
+                    .iter()
+                    .any(|of| of.joint() == name),
                 Coupling::Relation(own) => own.terms.iter().any(|term| term.joint == name),
                 // Ways to wheels and racks leave out what events switch.
                 _ => false,
@@ -138,6 +142,18 @@ impl Checker<'_> {
             if let Some((coupling, _)) = all.find(|(_, own)| couples(own)) {
                 let found = format!("the joint {said}, which \"{coupling}\" couples");
                 fault(found, "a joint through which no coupling goes");
+            }
+            let turns = |load: &Load| match load {
+                Load::Controller(own) => {
+                    own.joint.as_deref() == Some(name)
+                        && (own.motor.as_ref()).is_some_and(|own| own.rotor_inertia.is_some())
+                }
+                _ => false,
+            };
+            let mut all = document.loads.iter();
+            if let Some((motor, _)) = all.find(|(_, own)| turns(own)) {
+                let found = format!("the joint {said}, which turns the rotor of \"{motor}\"");
+                fault(found, "a joint that turns no rotor");
             }
         }
     }

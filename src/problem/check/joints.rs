@@ -187,6 +187,11 @@ impl Checker<'_> {
 
     /// Checks that the joint of a drive or a coupling has the degree of freedom that it moves.
     pub(super) fn driven(&mut self, pointer: &str, joint: &str, dof: DegreeOfFreedom) {
+        self.moving_joint(&join(pointer, "joint"), joint, dof);
+    }
+
+    /// Checks the name of a joint that has this degree of freedom.
+    pub(super) fn moving_joint(&mut self, pointer: &str, joint: &str, dof: DegreeOfFreedom) {
         let kinds = [
             JointKind::Revolute,
             JointKind::Planar,
@@ -197,7 +202,7 @@ impl Checker<'_> {
             .into_iter()
             .filter(|kind| kind.degrees_of_freedom().contains(&dof))
             .collect();
-        self.loaded_joint(pointer, joint, &kinds);
+        self.joint_of_kind(pointer, joint, &kinds);
     }
 
     /// Checks a motion in time.

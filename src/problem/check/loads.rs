@@ -170,7 +170,11 @@ impl Checker<'_> {
 
     /// Checks that the joint of a load or drive exists and has one of these kinds.
     pub(super) fn loaded_joint(&mut self, pointer: &str, name: &str, kinds: &[JointKind]) {
-        let pointer = join(pointer, "joint");
+        self.joint_of_kind(&join(pointer, "joint"), name, kinds);
+    }
+
+    /// Checks the name of a joint, which is of one of these kinds.
+    pub(super) fn joint_of_kind(&mut self, pointer: &str, name: &str, kinds: &[JointKind]) {
         let wanted = kinds.iter().map(|kind| kind.name()).collect::<Vec<_>>();
         let expected = format!("the name of a joint that is {}", wanted.join(" or "));
         match self.document.joints.get(name) {
@@ -460,7 +464,7 @@ impl Checker<'_> {
     }
 
     /// Checks that a table has two points or more, in ascending order.
-    fn rising(
+    pub(super) fn rising(
         &mut self,
         table: &str,
         (at, places): (&str, &[f64]),

@@ -123,6 +123,12 @@ impl Writer<'_> {
         for term in terms.into_iter().flatten() {
             used.rename_joint(term.get_mut("joint"));
         }
+        for key in ["cam", "follower"] {
+            let motions = entry.get_mut(key).and_then(Value::as_object_mut);
+            for joint in motions.into_iter().flat_map(|own| own.values_mut()) {
+                used.rename_joint(Some(joint));
+            }
+        }
         match entry.get_mut("at") {
             own @ Some(Value::String(_)) => used.rename_location(own),
             own => self.moved(used, own, &join(pointer, "at"), true),

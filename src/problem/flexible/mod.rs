@@ -134,6 +134,7 @@ fn tie<S: Scalar>(
         places: Vec::new(),
         displacement: Vec::new(),
         rotation: Vec::new(),
+        profile: None,
     };
     for (k, coordinate) in node.displacements.iter().enumerate() {
         if let Some(coordinate) = coordinate {

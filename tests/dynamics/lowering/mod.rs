@@ -137,7 +137,7 @@ const BDF: Method = Method::Bdf {
 /// (`benchmarks.rs` runs them through it with reductions).
 #[test]
 fn every_problem_moves_the_same_lowered() {
-    let all: [(&str, bool, &[Method], f64); 24] = [
+    let all: [(&str, bool, &[Method], f64); 25] = [
         ("bump_stop", true, &[Method::Dop853, RADAU], 1e-10),
         ("cart_pole", true, &[Method::Dop853, RADAU], 1e-10),
         ("desk_lamp", true, &[Method::Dop853], 1e-11),
@@ -172,6 +172,12 @@ fn every_problem_moves_the_same_lowered() {
             true,
             &[Method::Dop853, RADAU],
             1e-11,
+        ),
+        (
+            "benchmarks/brachistochrone",
+            true,
+            &[Method::Dop853, RADAU],
+            1e-9,
         ),
         ("benchmarks/bricard", false, &[Method::Dop853, RADAU], 1e-11),
         ("benchmarks/flyball_governor", false, &[RADAU], 1e-11),

@@ -134,7 +134,10 @@ pub fn march<S: SolveScalar>(
         }
         _ => None,
     };
-    let mut touches = Touches::open(model, numbering, [&from.q, &from.v, &from.a]);
+    let mut touches = {
+        let start = [&from.q[..], &from.v, &from.a];
+        Touches::open(model, numbering, (start, !given && !equal))
+    };
     while let Some(width) = controller.next(run.grid.reached()) {
         let begin = run.grid.reached();
         let h = run.grid.size(duration, width, begin);
@@ -441,7 +444,7 @@ pub fn failed<S: SolveScalar>(
         StepFailure::Open => IntegrationFailure::Opened { time, step },
         StepFailure::Inaccurate(error) => IntegrationFailure::Unstable { time, step, error },
         StepFailure::Missed(missed) => IntegrationFailure::MissedContact {
-            load: model.loads[missed.load].name.clone(),
+            load: missed.over.name(model),
             time,
             step,
         },

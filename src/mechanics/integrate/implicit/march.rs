@@ -192,7 +192,10 @@ fn march_until<S: SolveScalar>(
     let mut touches = Touches::open(
         model,
         numbering,
-        [&past.from.q, &past.from.v, &past.from.vdot],
+        (
+            [&past.from.q, &past.from.v, &past.from.vdot],
+            matches!(settings.spacing, Spacing::Tolerance(_)),
+        ),
     );
     while let Some(width) = controller.next(run.grid.reached()) {
         if let Some(stretch) = &stretch
@@ -237,7 +240,7 @@ fn march_until<S: SolveScalar>(
                 None => {}
                 Some(missed) if controller.give_up_over(missed.part) => {
                     let (step, time) = at;
-                    let load = model.loads[missed.load].name.clone();
+                    let load = missed.over.name(model);
                     return Err(IntegrationFailure::MissedContact { load, time, step });
                 }
                 Some(_) => {

@@ -13,6 +13,7 @@ use super::equations::State;
 use super::krylov::lowest;
 use super::modes::{Vibration, WantedModes};
 use super::pencil::{At, Matrices, contracted};
+use super::released::Released;
 use super::rest::FREE;
 use super::{KnownStarts, Solver};
 use crate::math::{Complex64, Scalar};
@@ -119,7 +120,11 @@ impl Solver<'_> {
                 return none("it is not stable".into());
             }
         }
-        let at = At::rest(self.layout, self.model, found, turning);
+        let released = Released::of((self.model, self.layout.numbering), found)?;
+        let at = match &released {
+            Some(own) => own.at(),
+            None => At::rest(self.layout, self.model, found, turning),
+        };
         let matrices = Matrices::new(at, damped);
         let allowed = at.freedom();
         let scales = (found.rate.sqrt(), (FREE * found.rate).sqrt());

@@ -30,6 +30,7 @@ mod krylov;
 mod matrix;
 mod modes;
 mod pencil;
+mod released;
 mod rest;
 mod ritz;
 mod sameness;
@@ -62,6 +63,7 @@ use matrix::Factors;
 use modes::{Mode, vibrations};
 pub use modes::{Vibration, WantedModes};
 use pencil::At;
+use released::Released;
 use rest::FreeMotion;
 pub use rest::{Stability, stability};
 pub use stability::growth;
@@ -448,10 +450,18 @@ impl Solver<'_> {
         request: &Request<S>,
     ) -> Result<Vibrations<S>, AssemblyFailure> {
         let (layout, mut out) = (self.layout, Vibrations::default());
-        let (at, wanted) = (At::rest(layout, model, x, turning), &request.modes);
+        let wanted = &request.modes;
+        let released = match layout.is_rest() {
+            true => Released::of((model, layout.numbering), x)?,
+            false => None,
+        };
+        let at = match &released {
+            Some(own) => own.at(),
+            None => At::rest(layout, model, x, turning),
+        };
         let unknowns = layout.numbering.unknowns();
         let (mut shapes, mut damped_shapes) = (Vec::new(), Vec::new());
-        if self.given.turning.is_some() {
+        if turning.is_some() || released.is_some() {
             let all = wanted.all_damped();
             if !all.none_undamped() {
                 let spectrum = self.spectrum(found, &all, (true, true))?;
@@ -481,7 +491,7 @@ impl Solver<'_> {
             }
         }
         for &own in &request.followed {
-            let damped = own.damped || self.given.turning.is_some();
+            let damped = own.damped || turning.is_some() || released.is_some();
             let shapes = if damped { &damped_shapes } else { &shapes };
             let place = self.follow(found, own, shapes)?;
             out.followed.push(match damped {

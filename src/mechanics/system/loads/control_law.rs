@@ -13,7 +13,7 @@ use super::coordinate::Coordinate;
 use super::motor::{self, Limited};
 use super::pull::{Pulled, Virtual, hold_virtual, moving, pull_axis, pull_point, with_motions};
 use crate::math::{Scalar, Vec3};
-use crate::model::controller::{Controller, Coordinate as Written};
+use crate::model::controller::{Controller, Coordinate as Written, Regime};
 use crate::model::{JointFrame, LoadKind};
 use crate::system::bodies::BodyMotion;
 use crate::system::in_motion::InMotion;
@@ -178,17 +178,20 @@ impl<'a, S: Scalar> Running<'a, S> {
 
     /// F.
     pub fn effort(&self) -> S {
-        match self.own.lag {
-            _ if !self.own.acts => S::zero(),
-            Some(_) => self.lagged,
-            None => self.limited.effort,
+        match (self.own.regime, &self.own.lag, &self.own.integral) {
+            (Regime::Off, ..) | (Regime::Settled, _, Some(_)) => S::zero(),
+            (Regime::Running, Some(_), _) => self.lagged,
+            (Regime::Running, None, _) | (Regime::Settled, _, None) => self.limited.effort,
         }
     }
 
     /// Bodies and rates of the states: İ and Ḟ.
     pub fn state_rates(&self) -> [Option<(usize, S)>; 2] {
         let s = self.limited.effort;
-        let stays = |rate: S| if self.own.acts { rate } else { S::zero() };
+        let stays = |rate: S| match self.own.regime {
+            Regime::Running => rate,
+            Regime::Settled | Regime::Off => S::zero(),
+        };
         let integral = self.own.integral.as_ref().map(|own| {
             let excess = own.tracking.map(|time| (s - self.demand) / time);
             let rate = own.gain * self.errors[0][0] + excess.unwrap_or(S::zero());
@@ -199,15 +202,17 @@ impl<'a, S: Scalar> Running<'a, S> {
         [integral, lag]
     }
 
-    /// Cotangents of outputs that change: none of a controller that does not act.
+    /// Cotangents of outputs that change.
     fn counted(&self, by: Outputs<S>) -> Outputs<S> {
-        match self.own.acts {
-            true => by,
-            false => Outputs {
-                effort: S::zero(),
-                integral: S::zero(),
-                lag: S::zero(),
-            },
+        let acts = match self.own.regime {
+            Regime::Running => return by,
+            Regime::Settled => self.own.integral.is_none(),
+            Regime::Off => false,
+        };
+        Outputs {
+            effort: if acts { by.effort } else { S::zero() },
+            integral: S::zero(),
+            lag: S::zero(),
         }
     }
 
@@ -226,11 +231,11 @@ impl<'a, S: Scalar> Running<'a, S> {
             lagged: S::zero(),
         };
         match &own.lag {
-            Some(lag) => {
+            Some(lag) if own.regime == Regime::Running => {
                 out.limited += by.lag / lag.time;
                 out.lagged += by.effort - by.lag / lag.time;
             }
-            None => out.limited += by.effort,
+            _ => out.limited += by.effort,
         }
         let mut by_error = S::zero();
         if let Some(integral) = &own.integral {

@@ -2,6 +2,7 @@
 
 use super::control_law::{Outputs, Running, of};
 use super::controller::give;
+use super::motor;
 use super::parameters::give_to_joint;
 use super::pull::Pulled;
 use super::{LoadCotangent, give_to_states};
@@ -61,6 +62,23 @@ pub(super) fn pull_effort(here: &InMotion<f64>, load: usize, weight: f64, out: &
         };
         give(here, (load, running), (by, &running.pull(by)), out);
     });
+}
+
+/// What the states of a settled controller are with its bodies, where a drive holds its joint by `held` if it has an integral;
+/// `None` if its motor does not allow this effort.
+pub fn settled<S: Scalar>(here: &InMotion<S>, load: usize, held: S) -> Option<Vec<(usize, S)>> {
+    with(here, load, |running| {
+        let own = running.own;
+        let mut all = Vec::new();
+        let mut effort = running.limited.effort;
+        if let Some(integral) = &own.integral {
+            effort = held;
+            let demand = motor::demand(&own.limits, effort)?;
+            all.push((integral.state, demand - running.demand));
+        }
+        all.extend(own.lag.as_ref().map(|own| (own.state, effort)));
+        Some(all)
+    })?
 }
 
 /// The error e_0 of a controller.

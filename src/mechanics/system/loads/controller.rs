@@ -43,8 +43,7 @@ pub(super) fn add_forces<S: Scalar>(here: &InMotion<S>, out: &mut [S]) {
     for_each(here, |_, running| {
         add_effort(here, running, out);
         for (body, rate) in running.state_rates().into_iter().flatten() {
-            let weight = here.model.gravity.x * here.model.bodies[body].mass;
-            out[here.numbering.velocity(body)] += rate - weight;
+            out[here.numbering.velocity(body)] += rate;
         }
     });
 }
@@ -231,11 +230,6 @@ pub(super) fn pull_back(here: &InMotion<f64>, psi: &[f64], out: &mut LoadCotange
         let virtually = running.coordinates[0].1.bodies.map(of_body);
         let states = running.state_rates();
         let own = states.map(|own| own.map_or(0.0, |(body, _)| psi[here.numbering.velocity(body)]));
-        for (state, psi) in states.into_iter().zip(own) {
-            let Some((body, _)) = state else { continue };
-            out.model.gravity.x -= here.model.bodies[body].mass * psi;
-            out.model.bodies[body].mass -= here.model.gravity.x * psi;
-        }
         let (by, known) = running.pulled(&virtually, own);
         give(here, (load, running), (by, &known), out);
     });

@@ -40,6 +40,7 @@ use parameters::give_to_parameters;
 use pull::Pulled;
 use std::ops::Range;
 
+pub use controlled::settled as settled_states;
 pub use distributed::normal_shares;
 
 /// Both bodies of a load, with its points or frames.

@@ -83,6 +83,26 @@ pub(super) fn limited<S: Scalar>(limits: &Limits<S>, demand: S, rate: S) -> Limi
     out
 }
 
+/// The demand for which a motor at rest has an effort; `None` if its limits do not allow it.
+pub(super) fn demand<S: Scalar>(limits: &Limits<S>, effort: S) -> Option<S> {
+    let n = limits.ratio;
+    let before = |effort: S, most: S| {
+        let w = effort / (n * most);
+        let square = w * w;
+        let eighth = square * square * square * square;
+        let root = (S::one() - eighth).sqrt().sqrt().sqrt();
+        (w.re().abs() < 1.0).then(|| effort / root)
+    };
+    let mut demand = effort;
+    if let Some([stall, _]) = limits.line {
+        demand = before(demand, stall)?;
+    }
+    match limits.effort {
+        Some(most) => before(demand, most),
+        None => Some(demand),
+    }
+}
+
 impl<S: Scalar> Limited<S> {
     /// Multiplies all derivatives by that of a limit behind them.
     fn scale(&mut self, by: S) {
@@ -164,6 +184,19 @@ mod tests {
                     assert!(near, "{limits:?} {demand} {rate} {wanted}: {given} {exact}");
                 }
             }
+        }
+    }
+
+    #[test]
+    fn the_demand_at_rest_has_the_effort() {
+        for limits in all() {
+            for effort in [-3.1, 0.2, 3.2] {
+                let demand = demand(&limits, effort).expect("within the limits");
+                let found = limited(&limits, demand, 0.0).effort;
+                assert!((found - effort).abs() < 1e-12, "{limits:?}: {found}");
+            }
+            let limited = limits.effort.is_some() || limits.line.is_some();
+            assert_eq!(demand(&limits, 5.2).is_none(), limited);
         }
     }
 

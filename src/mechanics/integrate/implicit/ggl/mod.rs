@@ -321,7 +321,10 @@ impl<'a, S: Scalar> Equations<'a, S> {
                     }
                     emit.add_row(f4 + i, column + 3, &(by.theta * h));
                 }
-                // The rate of a coupled joint does not depend on its coordinates where it is closed.
+                if let Some((slot, x)) = joints::curvature(joint, &here) {
+                    emit.add(f4 + i, y + slot, x * at.v[slot] * h);
+                }
+                // The rate of other coupled joints does not depend on their coordinates where they are closed.
                 let modes = joint.modes.as_ref().filter(|_| !joint.is_coupled());
                 let Some(modes) = modes else { continue };
                 for (slot, x) in by_coordinates(joint, modes, numbering, &of_frame) {
