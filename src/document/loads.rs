@@ -353,6 +353,8 @@ pub struct Contact {
     #[serde(default = "nothing")]
     #[schemars(extend("unit" = "m", "minimum" = 0))]
     pub radius: Quantity,
+    /// Of a wheel on a plane: the circle of the centres, about `at`, of the spheres that are its tyre.
+    pub wheel: Option<Wheel>,
     /// Surface of the second body.
     pub surface: Surface,
     /// Stiffness k: force per penetration, to the power of the exponent if there is one.
@@ -375,6 +377,18 @@ pub struct Contact {
     pub exponent: f64,
     /// Friction, default none.
     pub friction: Option<ContactFriction>,
+}
+
+/// A wheel: a torus.
+#[derive(Clone, Debug, Deserialize, JsonSchema)]
+#[serde(deny_unknown_fields)]
+pub struct Wheel {
+    /// Its axis, of any length but zero, in ground axes at the start and fixed in the body.
+    #[schemars(extend("unit" = "1"))]
+    pub axis: Vector,
+    /// Radius of the circle; that of the whole wheel is larger by the `radius` of the contact.
+    #[schemars(extend("unit" = "m", "exclusiveMinimum" = 0))]
+    pub radius: Quantity,
 }
 
 /// Friction of a contact.
@@ -413,6 +427,16 @@ pub enum Surface {
         half: Vector,
         /// Its radius.
         #[schemars(extend("unit" = "m", "exclusiveMinimum" = 0))]
+        radius: Quantity,
+    },
+    /// A box along the axes of its body, those of ground if it is ground's.
+    Box {
+        /// Its edges.
+        #[schemars(extend("unit" = "m", "exclusiveMinimum" = 0))]
+        size: [Quantity; 3],
+        /// Radius of its edges, default 0: sharp ones. It is within `size`.
+        #[serde(default = "nothing")]
+        #[schemars(extend("unit" = "m", "minimum" = 0))]
         radius: Quantity,
     },
 }

@@ -3,9 +3,10 @@
 use crate::functions::snapshot::Snapshot;
 use crate::integrate::Trajectory;
 use crate::math::Vec3;
-use crate::model::{JointKind, LoadKind, Model};
+use crate::model::{JointKind, LoadKind, Model, Role};
 use crate::plots::{Connector, ConnectorKind};
 use crate::problem::{Drawing, Outline};
+use crate::system::loads;
 
 /// A point of a body from its centre of mass, or of ground.
 type Fixed = (Option<usize>, Vec3<f64>);
@@ -32,10 +33,14 @@ pub(super) fn connectors(
             .map(|ends| ends.each_ref().map(|p| drawing.flat(p)))
             .collect(),
     };
-    joined(of, drawing, instants)
-        .into_iter()
-        .map(flat)
-        .collect()
+    let forces = forces(of, instants).into_iter();
+    let forces = forces.map(|(to_ground, ends)| Joined {
+        kind: ConnectorKind::Force,
+        to_ground,
+        ends,
+    });
+    let joined = joined(of, drawing, instants);
+    joined.into_iter().chain(forces).map(flat).collect()
 }
 
 /// The connectors of a model at some instants.
@@ -126,6 +131,65 @@ pub(super) fn joined(
         }
     }
     all
+}
+
+/// Most contacts whose forces are drawn: more hide the machine.
+const MOST: usize = 24;
+/// Length of the arrow of the largest force, relative to the room in which bodies and contacts are.
+const LONGEST: f64 = 0.3;
+
+/// The arrows of the forces of contacts on their first bodies at some instants, and whether each is with ground; none without
+/// force.
+fn forces(
+    (model, run): (&Model<f64>, &Trajectory<f64>),
+    instants: &[usize],
+) -> Vec<(bool, Vec<[Vec3<f64>; 2]>)> {
+    let contacts = model.loads.iter();
+    let contacts = contacts.filter(|load| matches!(load.kind, LoadKind::Contact(_)));
+    if !(1..=MOST).contains(&contacts.count()) {
+        return Vec::new();
+    }
+    let motions: Vec<_> = instants
+        .iter()
+        .map(|&k| Snapshot::of(model, run, k).motions())
+        .collect();
+    let pressed: Vec<_> = motions
+        .iter()
+        .map(|motions| loads::contact_forces(model, motions))
+        .collect();
+    let places = motions.iter().flatten().zip(model.bodies.iter().cycle());
+    let places = places.filter(|(_, body)| body.role == Role::Solid);
+    let places = places.map(|(motion, _)| motion.position);
+    let touched = pressed.iter().flatten().map(|(_, [place, _])| *place);
+    let all: Vec<Vec3<f64>> = places.chain(touched).collect();
+    let room = |i: usize| {
+        let (low, high) = all
+            .iter()
+            .fold((f64::INFINITY, f64::NEG_INFINITY), |(a, b), x| {
+                (a.min(x[i]), b.max(x[i]))
+            });
+        high - low
+    };
+    let size = (0..3).map(room).fold(0.0, f64::hypot);
+    let largest = pressed.iter().flatten();
+    let largest = largest.fold(0.0, |most: f64, (_, [_, force])| most.max(force.norm()));
+    if largest == 0.0 {
+        return Vec::new();
+    }
+    let scale = LONGEST * size / largest;
+    let of = |i: usize| {
+        let (load, _) = pressed[0][i];
+        let to_ground = match &model.loads[load].kind {
+            LoadKind::Contact(own) => own.body_b.is_none(),
+            _ => false,
+        };
+        let ends = pressed.iter().map(|own| {
+            let (_, [place, force]) = own[i];
+            [place, place + force * scale]
+        });
+        (to_ground, ends.collect())
+    };
+    (0..pressed[0].len()).map(of).collect()
 }
 
 /// Whether a point of a body lies outside its shape.

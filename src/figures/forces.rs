@@ -1,10 +1,11 @@
-//! Forces for the page: reactions of joints and applied forces, as arrows.
+//! Forces for the page: reactions of joints, applied forces and those of contacts, as arrows.
 
 use crate::driver::Simulation;
 use crate::functions::snapshot::Snapshot;
 use crate::math::Vec3;
 use crate::model::{Axes, LoadKind};
 use crate::page::{Arrow, rounded};
+use crate::system::loads;
 
 /// Most arrows: more hide the machine.
 const MOST: usize = 24;
@@ -16,7 +17,13 @@ pub fn arrows(simulation: &Simulation, frames: &[usize]) -> (Vec<Arrow>, bool) {
     let forces = || model.loads.iter().filter(|load| is_force(&load.kind));
     // The attachments of flexible bodies are no joints of the file.
     let joints = || (model.joints.iter().enumerate()).filter(|(_, joint)| joint.modes.is_none());
-    if joints().count() + forces().count() > MOST {
+    let contacts = || {
+        model
+            .loads
+            .iter()
+            .filter(|load| matches!(load.kind, LoadKind::Contact(_)))
+    };
+    if joints().count() + forces().count() + contacts().count() > MOST {
         return (Vec::new(), true);
     }
     let at = |k: usize| Snapshot::of(model, run, k);
@@ -60,7 +67,23 @@ pub fn arrows(simulation: &Simulation, frames: &[usize]) -> (Vec<Arrow>, bool) {
             forces: frames.iter().map(each).collect(),
         })
     };
+    let pressed: Vec<_> = (frames.iter())
+        .map(|&k| loads::contact_forces(model, &at(k).motions()))
+        .collect();
+    let of_contact = |i: usize| {
+        let (load, _) = pressed[0][i];
+        let forces = pressed.iter().map(|own| {
+            let (_, [place, force]) = own[i];
+            ends(place, force)
+        });
+        Arrow {
+            name: model.loads[load].name.clone(),
+            applied: false,
+            forces: forces.collect(),
+        }
+    };
     let mut all: Vec<Arrow> = joints().map(of_joint).collect();
     all.extend(forces().filter_map(of_load));
+    all.extend((0..pressed.first().map_or(0, Vec::len)).map(of_contact));
     (all, false)
 }

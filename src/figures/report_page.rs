@@ -368,6 +368,7 @@ fn stage(shown: &Shown, notes: &mut Vec<String>) -> (Option<Stage>, Stage) {
             ConnectorKind::Rod => "rod",
             ConnectorKind::Spring => "spring",
             ConnectorKind::Arm { .. } => "arm",
+            ConnectorKind::Force => "force",
         },
         body: match own.kind {
             ConnectorKind::Arm { body } => bodies().position(|shown| shown == body),

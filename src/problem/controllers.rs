@@ -10,7 +10,9 @@ use crate::math::{Scalar, Vec3};
 use crate::model::controller::{
     Controller, Coordinate, Feedback, Integral, Lag, Limits, Regime, Weight,
 };
-use crate::model::{CoupledMotion, DegreeOfFreedom, Drive, LoadKind, Model, TimeFunction};
+use crate::model::{
+    CoupledMotion, DegreeOfFreedom, Drive, LoadKind, Model, RigidBody, Role, TimeFunction,
+};
 use crate::quantity::Quantity;
 use crate::schema::Document;
 use crate::schema::controllers::{Controller as Written, Feedback as WrittenFeedback, Reference};
@@ -114,6 +116,11 @@ pub fn held_at_rest<S: Scalar>(
     all
 }
 
+/// Name of the coordinate of a rotor.
+fn rotor_of(load: &str) -> String {
+    format!("{load}, rotor")
+}
+
 /// Adds the rotors of motors to a model.
 pub fn add_rotors<S: Scalar>(document: &Document, assembly: &Assembly<S>, model: &mut Model<S>) {
     for (name, load) in &document.loads {
@@ -131,7 +138,7 @@ pub fn add_rotors<S: Scalar>(document: &Document, assembly: &Assembly<S>, model:
                 factor: S::one(),
             };
             let inertia = assembly.quantity(inertia) * ratio * ratio;
-            model.add_coordinate(&format!("{name}, rotor"), &motion, inertia);
+            model.add_coordinate(&rotor_of(name), &motion, inertia);
         }
     }
 }
@@ -207,7 +214,11 @@ pub(super) fn described(model: &Model<f64>) -> Vec<String> {
             .filter(|_| runs)
             .map(|_| "its integral");
         let lag = own.lag.as_ref().filter(|_| runs).map(|_| "its lag");
-        let states: Vec<&str> = integral.into_iter().chain(lag).collect();
+        let is_rotor = |body: &RigidBody<f64>| {
+            body.role == Role::Coordinate && body.name.starts_with(&rotor_of(&load.name))
+        };
+        let rotor = model.bodies.iter().any(is_rotor).then_some("its rotor");
+        let states: Vec<&str> = integral.into_iter().chain(lag).chain(rotor).collect();
         let cost = match states.len() {
             0 => "no state".to_owned(),
             n => format!("{n} of {unknowns} unknowns for {}", states.join(" and ")),

@@ -416,11 +416,19 @@ pub(super) struct Followed<S> {
 }
 
 /// The degree of freedom of a motion.
-fn dof(of: &JointMotion) -> DegreeOfFreedom {
+pub(super) fn dof(of: &JointMotion) -> DegreeOfFreedom {
     match of {
         JointMotion::Turn(_) => DegreeOfFreedom::Rotation,
         JointMotion::Slide(_) => DegreeOfFreedom::Translation,
     }
+}
+
+/// The cams of a document.
+pub(super) fn cams(document: &Document) -> impl Iterator<Item = &Cam> {
+    document.couplings.values().filter_map(|own| match own {
+        Coupling::Cam(own) => Some(own),
+        _ => None,
+    })
 }
 
 /// By how much the placement misses the constant of a relation that has one.
@@ -447,20 +455,25 @@ fn miss<S: Scalar>(
     assembly.quantity(constant) - placed
 }
 
-/// The profile of a cam between motions that count from the placement.
-fn profile<S: Scalar>(
-    assembly: &Assembly<S>,
-    cam: &Cam,
-    placed: impl Fn(&str, DegreeOfFreedom) -> S,
-) -> TimeFunction<S> {
+/// The profile of a cam, of motions as functions measure them.
+pub(super) fn written_profile<S: Scalar>(assembly: &Assembly<S>, cam: &Cam) -> TimeFunction<S> {
     let own = &cam.profile;
     let written = WrittenCourse::Table(
         &own.at,
         &own.values,
         Some(own.interpolation.unwrap_or(Interpolation::Spline)),
     );
+    course(assembly, written)
+}
+
+/// The profile of a cam between motions that count from the placement.
+fn profile<S: Scalar>(
+    assembly: &Assembly<S>,
+    cam: &Cam,
+    placed: impl Fn(&str, DegreeOfFreedom) -> S,
+) -> TimeFunction<S> {
     let [from, start] = [&cam.cam, &cam.follower].map(|of| placed(of.joint(), dof(of)));
-    course(assembly, written).since(from).shifted(-start)
+    written_profile(assembly, cam).since(from).shifted(-start)
 }
 
 /// The angle or displacement of a joint as placed, as functions measure it.

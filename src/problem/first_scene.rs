@@ -8,7 +8,7 @@ use super::memory;
 use super::placement::Assembly;
 use super::pointer::join;
 use crate::math::{Dual, Vec3};
-use crate::model::{Joint as ModelJoint, JointKind, RigidBody};
+use crate::model::{Joint as ModelJoint, JointKind, Load, LoadKind, Model, RigidBody};
 use crate::schema::couplings::Coupling;
 use crate::schema::joints::Joint;
 use crate::system::failure::AssemblyFailure;
@@ -57,7 +57,24 @@ pub(super) fn collapsed(problem: &Problem) -> Option<Finding> {
     };
     let rod = rod.map(|pointer| (pointer, apart.to_owned()));
     let (pointer, expected) = rod.or_else(spring)?;
+    if let Some(contact) = pointer.strip_suffix("/at")
+        && lies(&model, contact)
+    {
+        let place = join(&join(contact, "wheel"), "axis");
+        let expected = "a wheel that stands: one that lies touches the plane all around";
+        return Some(Finding::new(place, "an axis along the normal", expected));
+    }
     Some(Finding::new(pointer, "ends at the same place", expected))
+}
+
+/// Whether the load at a place of the file is the contact of a wheel.
+fn lies(model: &Model<f64>, pointer: &str) -> bool {
+    let is = |load: &&Load<f64>| pointer == join(&join("/loads", &load.name), "contact");
+    let load = model.loads.iter().find(is);
+    load.is_some_and(|load| match &load.kind {
+        LoadKind::Contact(own) => own.wheel.is_some(),
+        _ => false,
+    })
 }
 
 /// Axes of a universal joint are perpendicular up to this cosine.

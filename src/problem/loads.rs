@@ -11,7 +11,7 @@ use crate::math::scalar::unit;
 use crate::math::{Scalar, Vec3};
 use crate::model::{
     Axes, Cable, CablePoint, Contact, DegreeOfFreedom, DistributedLoad, ForceTable, Load, LoadKind,
-    NormalLaw, Spread, Surface, TimeFunction,
+    NormalLaw, Spread, Surface, TimeFunction, Wheel,
 };
 use crate::prepared::Prepared;
 use crate::quantity::{Quantity, Vector};
@@ -229,7 +229,10 @@ fn stop_of<S: Scalar>(document: &Document, assembly: &Assembly<S>, stop: &Stop) 
 fn contact_of<S: Scalar>(assembly: &Assembly<S>, contact: &WrittenContact) -> Contact<S> {
     let get = |quantity: &Quantity| assembly.quantity(quantity);
     let ends = ends(assembly, &contact.between, &contact.at);
-    let turn = assembly.pose(&contact.between[1]).rotation;
+    let [of_a, turn] = contact
+        .between
+        .each_ref()
+        .map(|own| assembly.pose(own).rotation);
     let in_body = |direction: &Vector| turn.tr_mul(&assembly.ground(direction));
     let friction = contact.friction.as_ref();
     Contact {
@@ -237,6 +240,10 @@ fn contact_of<S: Scalar>(assembly: &Assembly<S>, contact: &WrittenContact) -> Co
         body_b: ends.body_b,
         point_a: ends.point_a,
         radius: get(&contact.radius),
+        wheel: contact.wheel.as_ref().map(|own| Wheel {
+            axis: unit(of_a.tr_mul(&assembly.ground(&own.axis))),
+            radius: get(&own.radius),
+        }),
         point_b: ends.point_b,
         surface: match &contact.surface {
             WrittenSurface::Plane { normal } => Surface::Plane {
@@ -249,6 +256,14 @@ fn contact_of<S: Scalar>(assembly: &Assembly<S>, contact: &WrittenContact) -> Co
                 half: in_body(half),
                 radius: get(radius),
             },
+            WrittenSurface::Box { size, radius } => {
+                let radius = get(radius);
+                let half = |i: usize| Vec3::ith(i, get(&size[i]) * 0.5 - radius);
+                Surface::Box {
+                    halves: [0, 1, 2].map(half),
+                    radius,
+                }
+            }
         },
         law: NormalLaw {
             exponent: contact.exponent,

@@ -12,6 +12,7 @@
 //! fraction grows in [`STEPS`] steps, and the root of the block is held. Bodies behind a loop move
 //! with it. Joints that are open in the placement are closed last, all together.
 
+use super::couplings;
 use super::hinge::{Hinge, Move, hinge, place};
 use super::placement::Assembly;
 use crate::math::rotation::{compose, conjugate, from_axis_angle, matrix};
@@ -89,6 +90,29 @@ impl<S: Scalar> Starts<S> {
         }
         if given.is_empty() {
             return None;
+        }
+        for own in couplings::cams(document) {
+            let joint = |name: &str| document.joints.get_index_of(name);
+            let [cam, follower] =
+                [&own.cam, &own.follower].map(|of| (joint(of.joint()), couplings::dof(of)));
+            let of = |(joint, dof): (Option<usize>, DegreeOfFreedom)| {
+                let mut all = given.iter();
+                all.find(|own: &&Given<S>| Some(own.joint) == joint && own.dof == dof)
+            };
+            // A follower without a start begins where its cam puts it.
+            if let (
+                Some(Given {
+                    values: [Some(x), _],
+                    ..
+                }),
+                None,
+                (Some(joint), dof),
+            ) = (of(cam), of(follower), follower)
+            {
+                let place = couplings::written_profile(assembly, own).value(*x);
+                let values = [Some(place), None];
+                given.push(Given { joint, dof, values });
+            }
         }
         let moving = |body: &crate::schema::mechanics::Body| {
             body.velocity.is_some() || document.initial_velocity.is_some()

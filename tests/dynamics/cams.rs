@@ -2,8 +2,9 @@
 //! derivatives by every method, and the same in other descriptions.
 
 use super::couplings::{close, turned};
+use super::phases::{simulated, whole};
 use crate::reference::documents::{problem as parsed, reversed, unlowered_values, values, vary};
-use crate::reference::gradients::gradients_are_exact;
+use crate::reference::gradients::{gradients_are_exact, gradients_of_expressions_are_exact};
 use serde_json::Value;
 use std::f64::consts::TAU;
 
@@ -61,7 +62,7 @@ fn bead(simulation: Value) -> Value {
         },
         "joints": {
             "along": {"prismatic": {"between": ["carriage", "ground"], "at": [0, 0, 0], "axis": [1, 0, 0],
-                      "start": {"slide": {"at": 0.4, "rate": -0.3}}}},
+                      "start": {"slide": {"displacement": 0.4, "rate": -0.3}}}},
             "up": {"prismatic": {"between": ["bead", "carriage"], "at": [0, 0, 0], "axis": [0, 0, 1]}}
         },
         "couplings": {"wire": {"cam": {
@@ -105,6 +106,10 @@ fn beads_rest_and_vibrate_in_the_valley() {
     let mut file = bead(Value::Null);
     file.as_object_mut().expect("a file").remove("simulation");
     file["analysis"] = json!("rest");
+    file["joints"]["along"]["prismatic"]
+        .as_object_mut()
+        .expect("a joint")
+        .remove("start");
     file["functions"] = json!({
         "x": {"final": {"slide": {"joint": "along"}}},
         "frequency": {"frequency": {"mode": 1}}
@@ -145,7 +150,7 @@ fn gradients_by_every_method() {
                 format!("{values}/3"),
                 format!("{values}/4"),
                 "/bodies/bead/mass".into(),
-                "/joints/along/prismatic/start/slide/at".into(),
+                "/joints/along/prismatic/start/slide/displacement".into(),
                 "/joints/along/prismatic/start/slide/rate".into(),
                 "/gravity/2".into(),
             ],
@@ -220,13 +225,17 @@ fn the_same_in_other_descriptions() {
 /// Angles of cams are counted through events, whose derivatives are exact.
 #[test]
 fn cams_go_on_through_events() {
-    let whole = values(&levers());
+    let undivided = values(&levers());
     let mut file = levers();
     file["bodies"]["weight"] = block(1.0);
     file["joints"]["hook"] = json!({"weld": {"between": ["weight", "ground"], "at": [0, 0, 0]}});
-    file["events"] = json!({"drop": {"when": {"time": 0.5}, "off": ["hook"]}});
-    for (a, b) in values(&file).iter().zip(&whole) {
-        close(*a, *b, 1e-7, "two phases");
+    file["loads"] =
+        json!({"push": {"force": {"body": "weight", "direction": [1, 0, 0], "magnitude": 1}}});
+    file["events"] = json!({"nothing": {"when": {"time": 0.5}, "off": ["push"]}});
+    let divided = parsed(&file);
+    let phases = simulated(&divided);
+    for (f, exact) in whole(&divided).into_iter().zip(&undivided) {
+        close(phases.value(f), *exact, 1e-7, "two phases");
     }
     vary(
         &mut file,
@@ -237,7 +246,7 @@ fn cams_go_on_through_events() {
         ]
         .map(String::from),
     );
-    gradients_are_exact(&parsed(&file), &json!("events"));
+    gradients_of_expressions_are_exact(&parsed(&file), &json!("events"));
 }
 
 /// Cams of parts have the joints of their part.

@@ -17,7 +17,7 @@ use flexbody_mechanics::model::controller::{
 };
 use flexbody_mechanics::model::{
     Axes, Cable, CablePoint, Contact, DegreeOfFreedom, ForceTable, JointKind, Load, LoadKind,
-    Model, NormalLaw, Smoothness, Surface, TimeFunction,
+    Model, NormalLaw, Smoothness, Surface, TimeFunction, Wheel,
 };
 use flexbody_mechanics::system::InMotion;
 use flexbody_mechanics::system::initial;
@@ -276,12 +276,17 @@ fn contacts(body_b: Option<usize>, numbers: &mut Numbers) -> Vec<(JointKind, Loa
                     radius: 5.0,
                 },
             ),
+            (6.0, boxed(numbers, [0.1, 0.1, 0.1], 5.0)),
+            (6.0, boxed(numbers, [20.0, 0.1, 30.0], 5.0)),
+            (3.0, boxed(numbers, [20.0, 30.0, 25.0], 2.0)),
+            (0.0, boxed(numbers, [20.0, 30.0, 25.0], 0.0)),
         ] {
             let contact = Contact {
                 body_a: 1,
                 body_b,
                 point_a: numbers.vector(),
                 radius,
+                wheel: None,
                 point_b: numbers.vector(),
                 surface,
                 law: NormalLaw {
@@ -293,10 +298,32 @@ fn contacts(body_b: Option<usize>, numbers: &mut Numbers) -> Vec<(JointKind, Loa
                 friction,
                 slip,
             };
+            if matches!(contact.surface, Surface::Plane { .. }) {
+                let wheel = Some(Wheel {
+                    axis: numbers.vector().normalize(),
+                    radius: 0.7,
+                });
+                let own = Contact {
+                    wheel,
+                    ..contact.clone()
+                };
+                all.push((JointKind::Spherical, LoadKind::Contact(own)));
+            }
             all.push((JointKind::Spherical, LoadKind::Contact(contact)));
         }
     }
     all
+}
+
+/// A box with these half edges, obliquely on its body.
+fn boxed(numbers: &mut Numbers, sizes: [f64; 3], radius: f64) -> Surface<f64> {
+    let first = numbers.vector().normalize();
+    let second = first.cross(&numbers.vector()).normalize();
+    let third = first.cross(&second);
+    Surface::Box {
+        halves: [first * sizes[0], second * sizes[1], third * sizes[2]],
+        radius,
+    }
 }
 
 /// Cables over pulleys on both bodies and ground: taut, within their onset and slack; of constant and changing length.

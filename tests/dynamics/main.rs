@@ -9,6 +9,7 @@ mod numbers;
 mod reference;
 
 mod allocations;
+mod boxes_and_wheels;
 mod bushings;
 mod cables;
 mod cams;

@@ -127,36 +127,21 @@ fn a_bead_falls_along_the_brachistochrone() {
     // The distances of the cycloid from (10, 10) at the nodes.
     let at = &file["couplings"]["wire"]["cam"]["profile"]["at"];
     let (a, end) = (5.0 / (1.0 - 3.508_368_768_524_f64.cos()), 3.508_368_768_524);
-    let polar = |t: f64| {
-        let (x, y) = (a * (t - t.sin()) - 10.0, -a * (1.0 - t.cos()));
-        (
-            std::f64::consts::PI - y.atan2(-x).abs(),
-            10.0 - x.hypot(y),
-            x,
-            y,
-        )
-    };
-    for (k, place) in last
-        .design
-        .iter()
-        .zip(at.as_array().expect("nodes").iter().skip(2))
-        .skip(1)
-        .enumerate()
-    {
-        let (node, at) = (place.0, place.1.as_f64().expect("a number"));
-        if k > 12 {
-            break;
-        }
+    let place = |t: f64| (a * (t - t.sin()) - 10.0, -a * (1.0 - t.cos()));
+    let nodes = at.as_array().expect("nodes").iter().skip(2);
+    for (k, (node, at)) in last.design[1..].iter().zip(nodes).take(14).enumerate() {
+        let at = at.as_f64().expect("a number");
         let (mut low, mut high) = (1e-9, end);
         for _ in 0..100 {
             let middle: f64 = 0.5 * (low + high);
-            let (_, _, x, y) = polar(middle);
+            let (x, y) = place(middle);
             match (-y).atan2(-x) < at {
                 true => low = middle,
                 false => high = middle,
             }
         }
-        let exact = polar(low).1;
-        assert!((node - exact).abs() < 0.05, "{k}: {node} {exact}");
+        let (x, y) = place(low);
+        let exact = 10.0 - x.hypot(y);
+        assert!((node - exact).abs() < 0.02, "{k}: {node} {exact}");
     }
 }

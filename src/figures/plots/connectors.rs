@@ -19,6 +19,8 @@ pub enum ConnectorKind {
     Rod,
     /// A spring between its points.
     Spring,
+    /// The force of a contact from its place, as an arrow.
+    Force,
     /// From a body's centre to a point outside its outline.
     Arm {
         /// Number of the body.
@@ -40,6 +42,10 @@ pub struct Connector {
 const WHITE: RGBColor = RGBColor(255, 255, 255);
 const ROD: RGBColor = RGBColor(120, 60, 20);
 const SPRING: RGBColor = RGBColor(150, 0, 100);
+const FORCE: RGBColor = RGBColor(200, 30, 30);
+/// Shortest arrow, and length of its head \[px\].
+const SHORTEST: f64 = 2.0;
+const HEAD: f64 = 6.0;
 /// Windings and amplitude of a drawn spring \[px\].
 const WINDINGS: usize = 6;
 const AMPLITUDE: f64 = 4.5;
@@ -48,12 +54,17 @@ const AMPLITUDE: f64 = 4.5;
 pub(super) fn legend(connectors: &[Connector]) -> Vec<(Key, String)> {
     let any = |wanted: &dyn Fn(ConnectorKind) -> bool| connectors.iter().any(|c| wanted(c.kind));
     let entry = |there: bool, key: Key, text: &str| there.then(|| (key, text.to_owned()));
-    use ConnectorKind::{Hinge, Rod, Slider, Spring};
+    use ConnectorKind::{Force, Hinge, Rod, Slider, Spring};
     let joint = any(&|kind| kind == Hinge || kind == Slider);
     [
         entry(joint, Key::Disc(INK), "joint"),
         entry(any(&|kind| kind == Rod), Key::Line(ROD), "rod"),
         entry(any(&|kind| kind == Spring), Key::Line(SPRING), "spring"),
+        entry(
+            any(&|kind| kind == Force),
+            Key::Line(FORCE),
+            "contact force",
+        ),
     ]
     .into_iter()
     .flatten()
@@ -80,6 +91,22 @@ pub(super) fn draw(
     match connector.kind {
         ConnectorKind::Rod => canvas.path(&[a, b], ROD, 2.2, alpha),
         ConnectorKind::Spring => canvas.path(&coil(a, b), SPRING, 1.2, alpha),
+        ConnectorKind::Force => {
+            let length = (b.0 - a.0).hypot(b.1 - a.1);
+            if length < SHORTEST {
+                return;
+            }
+            let (along, across) = axes(a, b);
+            let head = HEAD.min(length);
+            let barb = |side: f64| {
+                (
+                    b.0 - head * along.0 + side * head * across.0,
+                    b.1 - head * along.1 + side * head * across.1,
+                )
+            };
+            canvas.path(&[a, b], FORCE, 1.4, alpha);
+            canvas.path(&[barb(0.4), b, barb(-0.4)], FORCE, 1.4, alpha);
+        }
         ConnectorKind::Arm { body } => canvas.path(&[a, b], color(body), 1.2, alpha),
         ConnectorKind::Hinge | ConnectorKind::Slider if late < 1.0 => {}
         ConnectorKind::Hinge => {

@@ -7,7 +7,7 @@ use super::planar::{Plane, Turned, points, used};
 use crate::math::scalar::{along, lift3};
 use crate::math::{Scalar, Vec3};
 use crate::model::controller::Coordinate;
-use crate::model::{Axes, DegreeOfFreedom, Form, JointKind, LoadKind, Model};
+use crate::model::{Axes, DegreeOfFreedom, Form, JointKind, LoadKind, Model, Surface};
 
 /// The largest angular velocity of the bodies \[rad/s\], by value or by a `change` of the variable.
 /// Speeds count by their ratio to the body's length. The round-off of a slow body scales with it.
@@ -320,9 +320,17 @@ impl Plane {
                     examiner.vanishes(tilt(*joint).as_slice(), 1.0, what);
                 }
                 LoadKind::Contact(own) => {
-                    if let Some(direction) = own.surface.direction() {
-                        let n = turned.normal(own.body_b);
+                    let n = turned.normal(own.body_b);
+                    if matches!(own.surface, Surface::Box { .. }) {
+                        // Whether faces are across the plane is not looked for.
+                        examiner.zero(S::one(), 1.0, what);
+                    }
+                    for direction in own.surface.directions() {
                         examiner.zero(n.dot(direction), largest(direction), what);
+                    }
+                    if let Some(wheel) = &own.wheel {
+                        let tilt = turned.normal(Some(own.body_a)).cross(&wheel.axis);
+                        examiner.vanishes(tilt.as_slice(), 1.0, what);
                     }
                 }
                 // Flexible bodies that carry it, and stiffnesses, have no plane but by chance, which is not looked for.

@@ -253,6 +253,9 @@ fn move_load<S: Scalar>(kind: &mut LoadKind<S>, on_host: &[Option<Pose<S>>]) {
         }
         LoadKind::Drag { body, point, .. } => moved(body, point),
         LoadKind::Contact(own) => {
+            if let (Some(pose), Some(wheel)) = (&on_host[own.body_a], &mut own.wheel) {
+                wheel.axis = pose.turn * wheel.axis;
+            }
             moved(&mut own.body_a, &mut own.point_a);
             if let Some(body) = &mut own.body_b {
                 if let Some(pose) = &on_host[*body] {

@@ -137,9 +137,10 @@ fn vectors(model: &Model<f64>) -> (Vec<Vec3<f64>>, Vec<Vec3<f64>>) {
             LoadKind::Contact(own) => {
                 let (of_a, of_b) = (turn(own.body_a), own.body_b.map(turn));
                 inside.push(of_a * own.point_a);
-                if let Some(direction) = own.surface.direction() {
+                for direction in own.surface.directions() {
                     inside.push(of_b.map_or(*direction, |turn| turn * direction));
                 }
+                across.extend(own.wheel.as_ref().map(|wheel| of_a * wheel.axis));
             }
             LoadKind::Force {
                 body,

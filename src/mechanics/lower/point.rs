@@ -101,7 +101,8 @@ pub(super) fn holds<S: Scalar>(
             }
             LoadKind::Contact(own) => {
                 // Friction turns a sphere; a point only if it is off the centre of mass.
-                let slides = own.friction.is_zero() || own.radius.is_zero();
+                let slides =
+                    own.wheel.is_none() && (own.friction.is_zero() || own.radius.is_zero());
                 if is(own.body_a) {
                     vanishes(slides.then_some(&own.point_a), &turns);
                 }

@@ -31,7 +31,7 @@ pub mod time_function;
 
 pub use axes::Axes;
 pub use cable::{Cable, CablePoint};
-pub use contact::{Contact, Surface};
+pub use contact::{Contact, Surface, Wheel};
 pub use coupling::CoupledMotion;
 pub use distributed::{DistributedLoad, Spread};
 pub use drive::{DegreeOfFreedom, Drive};

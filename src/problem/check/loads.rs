@@ -366,6 +366,25 @@ impl Checker<'_> {
             Surface::Capsule { half, .. } => {
                 self.direction(&join(&join(&place, "capsule"), "half"), half);
             }
+            Surface::Box { size, radius } => {
+                for (k, own) in size.iter().enumerate() {
+                    if own.value <= 2.0 * radius.value {
+                        let found = format!("{}, with a \"radius\" of {}", own.value, radius.value);
+                        let place = join(&join(&join(&place, "box"), "size"), k);
+                        let expected = "an edge longer than twice the radius";
+                        self.fault(Finding::new(place, found, expected));
+                    }
+                }
+            }
+        }
+        if let Some(wheel) = &contact.wheel {
+            let wheels = join(pointer, "wheel");
+            self.direction(&join(&wheels, "axis"), &wheel.axis);
+            if !matches!(contact.surface, Surface::Plane { .. }) {
+                let found = "a wheel on another surface than a plane";
+                let expected = "a plane; spheres and points touch all surfaces";
+                self.fault(Finding::new(wheels, found, expected).of_key());
+            }
         }
     }
 

@@ -50,7 +50,10 @@ pub fn gaps<S: Scalar>(
         }
         if let LoadKind::Contact(own) = kind {
             let depth = contact::penetration(own, at).re();
-            add(depth, speed_seen(at), own.law.width);
+            let rolls = (own.wheel.as_ref()).map_or(0.0, |wheel| {
+                wheel.radius.re() * at.a.motion.omega.map(|x| x.re()).norm()
+            });
+            add(depth, speed_seen(at) + rolls, own.law.width);
         }
     });
     for load in of {

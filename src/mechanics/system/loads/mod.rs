@@ -345,6 +345,20 @@ fn at_one_place(at: &Acting<f64>) -> bool {
     (at.a.point() - at.b.point()).norm() <= ROUND_OFF * (size(&at.a) + size(&at.b))
 }
 
+/// The contacts of a model with the place of each and its force on body A, in ground axes.
+pub fn contact_forces(
+    model: &Model<f64>,
+    motions: &[BodyMotion<f64>],
+) -> Vec<(usize, [Vec3<f64>; 2])> {
+    let mut all = Vec::new();
+    for_each_load(model, motions, |i, kind, at| {
+        if let LoadKind::Contact(own) = kind {
+            all.push((i, contact::pressed(own, at)));
+        }
+    });
+    all
+}
+
 /// The first spring, stop, contact, controller or part of a cable of length zero in the placement whose ends may not meet, if
 /// any.
 pub fn without_length(model: &Model<f64>) -> Option<&str> {

@@ -19,8 +19,10 @@ pub(super) struct Pulled<S> {
     pub a: SideCotangent<S>,
     /// The same for body B.
     pub b: SideCotangent<S>,
-    /// In the direction of a force or torque, or that of the surface of a contact.
+    /// In the direction of a force or torque.
     pub direction: Vec3<S>,
+    /// Of a contact: in the directions of its surface.
+    pub directions: [Vec3<S>; 3],
     /// In the scalars of the load, in the order of its definition. For a force or torque the first
     /// is the magnitude.
     pub scalars: [S; SCALARS],
@@ -38,6 +40,7 @@ impl<S: Scalar> Pulled<S> {
             a: SideCotangent::fixed(),
             b: SideCotangent::fixed(),
             direction: Vec3::zeros(),
+            directions: [Vec3::zeros(); 3],
             scalars: [S::zero(); SCALARS],
             six: None,
             places: [S::zero(); 2],
