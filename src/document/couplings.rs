@@ -188,7 +188,10 @@ impl JointMotion {
 #[serde(deny_unknown_fields)]
 pub struct Profile {
     /// Values of the motion of the cam, ascending.
-    #[schemars(extend("unit" = "m or rad"), length(min = 2))]
+    #[schemars(extend(
+        "unit" = "m or rad",
+        "design_variable" = "the places of a profile keep their order; design its values"
+    ), length(min = 2))]
     pub at: Vec<f64>,
     /// The motion of the follower at each.
     #[schemars(extend("unit" = "m or rad"), length(min = 2))]

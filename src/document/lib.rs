@@ -213,6 +213,17 @@ pub enum Analysis {
 const INPUT_TOLERANCE: f64 = 1e-5;
 
 impl Document {
+    /// Whether motions of joints are coupled, by couplings or with rotors.
+    pub fn is_coupled(&self) -> bool {
+        let turns = |load: &loads::Load| match load {
+            loads::Load::Controller(own) => {
+                (own.motor.as_ref()).is_some_and(|motor| motor.rotor_inertia.is_some())
+            }
+            _ => false,
+        };
+        !self.couplings.is_empty() || self.loads.values().any(turns)
+    }
+
     /// The tolerance of the input, relative.
     pub fn input_tolerance(&self) -> f64 {
         self.input_tolerance.unwrap_or(INPUT_TOLERANCE)

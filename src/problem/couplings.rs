@@ -423,14 +423,6 @@ pub(super) fn dof(of: &JointMotion) -> DegreeOfFreedom {
     }
 }
 
-/// The cams of a document.
-pub(super) fn cams(document: &Document) -> impl Iterator<Item = &Cam> {
-    document.couplings.values().filter_map(|own| match own {
-        Coupling::Cam(own) => Some(own),
-        _ => None,
-    })
-}
-
 /// By how much the placement misses the constant of a relation that has one.
 fn miss<S: Scalar>(
     assembly: &Assembly<S>,

@@ -227,14 +227,20 @@ impl fmt::Display for Fault {
     }
 }
 
+/// Most faults that are told at once: a generated file may have thousands of a kind.
+const TOLD: usize = 40;
+
 impl fmt::Display for Faults {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        for (k, fault) in self.list.iter().enumerate() {
+        for (k, fault) in self.list.iter().take(TOLD).enumerate() {
             if k > 0 {
                 writeln!(f)?;
             }
             write!(f, "{fault}")?;
         }
-        Ok(())
+        match self.list.len().saturating_sub(TOLD) {
+            0 => Ok(()),
+            more => write!(f, "\n… and {more} more faults"),
+        }
     }
 }

@@ -29,6 +29,7 @@ use crate::system::angular_momentum::AngularMomentum;
 use crate::system::equilibrium::{DampedVibration, Follow, Vibrations};
 use crate::system::loads::measured::{LoadMeasure, LoadPart};
 use crate::system::measures::{End, Wrench, WrenchPart};
+use std::collections::BTreeMap;
 
 /// Makes the functions of a scene.
 pub(super) struct FunctionBuilder<'a, S> {
@@ -44,6 +45,8 @@ pub(super) struct FunctionBuilder<'a, S> {
     pub frames: Vec<[Vec3<S>; 3]>,
     /// By coupling: its motions.
     pub coupled: Vec<Vec<Followed<S>>>,
+    /// By joint: its angle with all turns, which loads count, at rest.
+    pub counted: BTreeMap<usize, f64>,
     /// Vibrations about rest.
     pub vibrations: Vibrations<S>,
     /// The modes among them that are followed by their shapes.
@@ -533,10 +536,11 @@ impl<S: Scalar> FunctionBuilder<'_, S> {
         };
         let axis = joint.axes()[0].expect("a joint with an angle has an axis");
         let axis = self.assembly.axis(axis);
-        let turn = starting_angle(self.document, self.assembly, name);
+        let index = self.document.joints.get_index_of(name);
+        let counted = index.and_then(|index| self.counted.get(&index).copied());
+        let turn = counted.or_else(|| starting_angle(self.document, self.assembly, name));
         let mut rotation = self.rotation(bodies, axis, Some(CountedFrom::Placement), turn);
         // On beams it is that of the sections that the joint holds.
-        let index = self.document.joints.get_index_of(name);
         let (own, other) = self.ends[index.expect("joints are checked")];
         rotation.body = own;
         rotation.relative_to = other;

@@ -30,6 +30,7 @@ use crate::system::Numbering;
 use crate::system::equilibrium::{Follow, Request, Turning, Vibrations, WantedModes, settle};
 use crate::system::failure::AssemblyFailure;
 use crate::system::placement::guess;
+use std::collections::BTreeMap;
 
 /// Default gravity \[m/s²\].
 pub const GRAVITY: [f64; 3] = [0.0, -9.81, 0.0];
@@ -77,6 +78,7 @@ pub fn with_places<S: Scalar>(
             .map(|joint| joint.frame_a.axes)
             .collect(),
         coupled: Vec::new(),
+        counted: BTreeMap::new(),
         vibrations: Vibrations::default(),
         followed: followed(document),
         x,
@@ -106,6 +108,12 @@ pub fn with_places<S: Scalar>(
         }
         for (body, mobility) in model.bodies.iter_mut().zip(mobilities) {
             body.mobility = mobility;
+        }
+        if document.is_rest() {
+            let all = model.loads.iter().flat_map(|load| load.kind.counters());
+            let counted =
+                all.map(|(joint, counter)| (joint, model.bodies[counter].position.x.re()));
+            builder.counted = counted.collect();
         }
     }
     let mut functions: Vec<Function<S>> = document

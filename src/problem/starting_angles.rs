@@ -1,29 +1,96 @@
 //! The angles with which joints and bodies start, whole turns included.
 
+use super::couplings::{dof, written_profile};
 use super::joints::drives;
 use super::placement::{Assembly, GROUND};
 use crate::math::{Scalar, Vec3};
 use crate::model::DegreeOfFreedom;
 use crate::schema::Document;
+use crate::schema::couplings::{Coupling, Term};
 use crate::schema::joints::Joint;
 use std::collections::{BTreeMap, VecDeque};
 
-/// The angle with which a joint starts, by the file or a drive \[rad\].
+/// The angle with which a joint starts, by the file, a drive or a coupling \[rad\].
 pub(super) fn starting_angle<S: Scalar>(
     document: &Document,
     assembly: &Assembly<S>,
     name: &str,
 ) -> Option<f64> {
-    let turns = DegreeOfFreedom::Rotation;
+    let of = (name, DegreeOfFreedom::Rotation);
+    let angle = given(document, assembly, of).or_else(|| led(document, assembly, of));
+    angle.map(|angle| angle.re())
+}
+
+/// A motion of a joint.
+type Of<'a> = (&'a str, DegreeOfFreedom);
+
+/// Where a joint starts by the file or a drive.
+fn given<S: Scalar>(document: &Document, assembly: &Assembly<S>, (name, dof): Of) -> Option<S> {
     let start = document.joints[name].start();
-    let [given, _] = start.and_then(|start| start.of(turns)).unwrap_or_default();
-    let given = given.map(|angle| assembly.quantity(&angle));
+    let [given, _] = start.and_then(|start| start.of(dof)).unwrap_or_default();
+    let given = given.map(|place| assembly.quantity(&place));
     let driven = || {
         let mut drives = drives(document, assembly, name).into_iter();
-        let drive = drives.find(|drive| drive.dof == turns)?;
+        let drive = drives.find(|drive| drive.dof == dof)?;
         Some(drive.course.value(S::zero()))
     };
-    given.or_else(driven).map(|angle| angle.re())
+    given.or_else(driven)
+}
+
+/// Where a coupling of others lets a joint start, if it has no start of its own: the follower of a cam, and the one term of a
+/// relation with a constant that has none.
+pub(super) fn led<S: Scalar>(document: &Document, assembly: &Assembly<S>, of: Of) -> Option<S> {
+    let mut all = document.couplings.len();
+    led_within(document, assembly, of, &mut all)
+}
+
+/// The same through at most `most` couplings.
+fn led_within<S: Scalar>(
+    document: &Document,
+    assembly: &Assembly<S>,
+    of: Of,
+    most: &mut usize,
+) -> Option<S> {
+    *most = most.checked_sub(1)?;
+    let mut place = |of: Of| {
+        let own = given(document, assembly, of);
+        own.or_else(|| led_within(document, assembly, of, most))
+    };
+    document
+        .couplings
+        .values()
+        .find_map(|coupling| match coupling {
+            Coupling::Cam(own) => {
+                let follows = own.follower.joint() == of.0 && dof(&own.follower) == of.1;
+                let cam = follows.then(|| place((own.cam.joint(), dof(&own.cam))))?;
+                Some(written_profile(assembly, own).value(cam.unwrap_or(S::zero())))
+            }
+            Coupling::Relation(own) => {
+                let constant = assembly.quantity(own.constant.as_ref()?);
+                let is_own = |term: &&Term| term.joint == of.0 && term_dof(term) == of.1;
+                let factor = |term: &Term| {
+                    let factor = term.turn.as_ref().or(term.slide.as_ref());
+                    factor.map_or(S::zero(), |factor| assembly.quantity(factor))
+                };
+                let term = own.terms.iter().find(is_own)?;
+                let others = own.terms.iter().filter(|other| !is_own(other));
+                let mut sum = others.map(|other| {
+                    let place = place((&other.joint, term_dof(other)))?;
+                    Some(factor(other) * place)
+                });
+                let sum = sum.try_fold(S::zero(), |sum, next| Some(sum + next?))?;
+                let factor = factor(term);
+                (factor.re() != 0.0).then(|| (constant - sum) / factor)
+            }
+            _ => None,
+        })
+}
+
+fn term_dof(term: &Term) -> DegreeOfFreedom {
+    match term.turn {
+        Some(_) => DegreeOfFreedom::Rotation,
+        None => DegreeOfFreedom::Translation,
+    }
 }
 
 /// Sine of the angle between axes that are parallel.

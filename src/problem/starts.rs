@@ -12,9 +12,9 @@
 //! fraction grows in [`STEPS`] steps, and the root of the block is held. Bodies behind a loop move
 //! with it. Joints that are open in the placement are closed last, all together.
 
-use super::couplings;
 use super::hinge::{Hinge, Move, hinge, place};
 use super::placement::Assembly;
+use super::starting_angles::led;
 use crate::math::rotation::{compose, conjugate, from_axis_angle, matrix};
 use crate::math::{Parameters, Scalar, Vec3};
 use crate::model::{
@@ -77,42 +77,25 @@ impl<S: Scalar> Starts<S> {
     /// The starts of a checked document with the joints of `model`; `None` if it has none.
     pub fn of(document: &Document, assembly: &Assembly<S>, model: &Model<S>) -> Option<Self> {
         let mut given = Vec::new();
-        for (joint, written) in document.joints.values().enumerate() {
+        for (joint, (name, written)) in document.joints.iter().enumerate() {
             for dof in DOFS {
                 let values = written.start().and_then(|start| start.of(dof));
                 let get = |value: Option<Quantity>| value.map(|value| assembly.quantity(&value));
-                let values = match values {
+                let mut values = match values {
                     Some(values) => Some(values.map(get)),
                     None => driven(document, &model.joints[joint], dof),
                 };
+                if values.as_ref().is_none_or(|values| values[0].is_none())
+                    && let Some(place) = led(document, assembly, (name, dof))
+                {
+                    let rate = values.and_then(|values| values[1]);
+                    values = Some([Some(place), rate]);
+                }
                 given.extend(values.map(|values| Given { joint, dof, values }));
             }
         }
         if given.is_empty() {
             return None;
-        }
-        for own in couplings::cams(document) {
-            let joint = |name: &str| document.joints.get_index_of(name);
-            let [cam, follower] =
-                [&own.cam, &own.follower].map(|of| (joint(of.joint()), couplings::dof(of)));
-            let of = |(joint, dof): (Option<usize>, DegreeOfFreedom)| {
-                let mut all = given.iter();
-                all.find(|own: &&Given<S>| Some(own.joint) == joint && own.dof == dof)
-            };
-            // A follower without a start begins where its cam puts it.
-            if let (
-                Some(Given {
-                    values: [Some(x), _],
-                    ..
-                }),
-                None,
-                (Some(joint), dof),
-            ) = (of(cam), of(follower), follower)
-            {
-                let place = couplings::written_profile(assembly, own).value(*x);
-                let values = [Some(place), None];
-                given.push(Given { joint, dof, values });
-            }
         }
         let moving = |body: &crate::schema::mechanics::Body| {
             body.velocity.is_some() || document.initial_velocity.is_some()
@@ -415,7 +398,9 @@ fn driven<S: Scalar>(
 ) -> Option<[Option<S>; 2]> {
     let drive = joint.drives.iter().find(|drive| drive.dof == dof)?;
     let [place, rate, ..] = drive.course.derivatives(S::zero());
-    let far = dof == DegreeOfFreedom::Rotation && place.re().abs() > QUARTER;
+    // What follows a joint by a coupling is placed where the joint starts.
+    let far =
+        dof == DegreeOfFreedom::Rotation && place.re().abs() > QUARTER || document.is_coupled();
     let follows = document.start != Start::Given;
     (far || follows).then_some([far.then_some(place), follows.then_some(rate)])
 }

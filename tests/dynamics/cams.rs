@@ -222,6 +222,47 @@ fn the_same_in_other_descriptions() {
     assert!(found[0] > 7.0 && found[1] > 4.0, "{found:?}");
 }
 
+/// Followers start where their cams put them, led by starts and drives of many turns, through one cam and two.
+#[test]
+fn followers_start_where_their_cams_are() {
+    let profile =
+        json!({"at": [-20, -10, -4, 0, 4, 8, 14], "values": [-20, -10, -4, 0, 4.5, 8, 14]});
+    let mut file = levers();
+    file["couplings"]["link"]["cam"]["profile"] = profile.clone();
+    file["bodies"]["third"] = file["bodies"]["lever"].clone();
+    file["bodies"]["third"]["place"] = json!({"at": [2, 0, 0]});
+    file["joints"]["third"] =
+        json!({"revolute": {"between": ["third", "ground"], "at": [2, 0, 0], "axis": [0, 0, 1]}});
+    file["couplings"]["more"] = json!({"cam": {"cam": {"turn": "lever"}, "follower": {"turn": "third"}, "profile": profile}});
+    file["simulation"]["duration"] = json!(0.001);
+    let at_start = |joint: &str| json!({"value": {"at": 0, "of": {"angle": {"joint": joint}}}});
+    file["functions"] =
+        json!({"a": at_start("crank"), "b": at_start("lever"), "c": at_start("third")});
+    for start in [0.0, 4.0, 8.0, -10.0] {
+        let expected = if start == 4.0 { 4.5 } else { start };
+        for driven in [false, true] {
+            let mut own = file.clone();
+            let joint = own["joints"]["crank"]["revolute"]
+                .as_object_mut()
+                .expect("a joint");
+            joint.remove("start");
+            match driven {
+                true => {
+                    own["drives"] =
+                        json!({"m": {"joint": "crank", "turn": {"polynomial": [start, 1]}}})
+                }
+                false => {
+                    own["joints"]["crank"]["revolute"]["start"] = json!({"turn": {"angle": start}})
+                }
+            }
+            let found = values(&own);
+            assert!((found[0] - start).abs() < 1e-9, "{start} {found:?}");
+            assert!((found[1] - expected).abs() < 1e-9, "{start} {found:?}");
+            assert!((found[2] - expected).abs() < 0.5, "{start} {found:?}");
+        }
+    }
+}
+
 /// Angles of cams are counted through events, whose derivatives are exact.
 #[test]
 fn cams_go_on_through_events() {
@@ -296,6 +337,14 @@ fn bad_cams_are_told() {
         &format!("{cam}/follower"),
         json!({"slide": "along"}),
         &["follower", "another motion"],
+    );
+    let mut file = bead(json!({"duration": 0.1}));
+    file["joints"]["up"]["prismatic"]["start"] = json!({"slide": {"displacement": 0.2}});
+    let found = flexbody_problem::Problem::parse(&file.to_string(), "bead.json", &[]);
+    let found = found.expect_err("a fault").to_string();
+    assert!(
+        found.contains("a follower with a start of its own"),
+        "{found}"
     );
     told(
         &format!("{cam}/profile/at/2"),

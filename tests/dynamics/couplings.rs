@@ -664,6 +664,42 @@ fn starts_follow_couplings() {
     );
 }
 
+/// What a relation with a constant leads starts where it puts it, over any number of turns, and drives are starts: the wheel
+/// that meshes with a driven one stays where it is placed, wherever the drive begins.
+#[test]
+fn couplings_lead_from_starts_and_drives() {
+    let mut document = two_gears(json!({"duration": 0.001}));
+    document["loads"] = json!({});
+    document["functions"] = json!({
+        "a": {"value": {"at": 0, "of": {"angle": {"joint": "a"}}}}, "b": {"value": {"at": 0, "of": {"angle": {"joint": "b"}}}}
+    });
+    let meshed = document["couplings"].clone();
+    for start in [0.3, 1.3, 1.5, 1.6, 2.5, 3.5, 7.0, -9.0] {
+        document["couplings"] = json!({"lever": {"relation": {"terms": [{"joint": "a", "turn": 1}, {"joint": "b", "turn": -1}],
+                                                              "constant": 0}}});
+        for driven in [false, true] {
+            let mut own = document.clone();
+            match driven {
+                true => {
+                    own["drives"] = json!({"m": {"joint": "a", "turn": {"polynomial": [start]}}})
+                }
+                false => {
+                    own["joints"]["a"]["revolute"]["start"] = json!({"turn": {"angle": start}})
+                }
+            }
+            for found in values(&own) {
+                close(found, start, 1e-9, "a relation");
+            }
+        }
+        document["couplings"] = meshed.clone();
+        let mut own = document.clone();
+        own["drives"] = json!({"m": {"joint": "a", "turn": {"polynomial": [start]}}});
+        let found = values(&own);
+        close(found[0], start, 1e-9, "a driven gear");
+        assert!(found[1].abs() < 1e-9, "{found:?}");
+    }
+}
+
 /// A second coupling of the same two gears, or drives of both, leave a row over, which is named; a ratio that contradicts
 /// them cannot move.
 #[test]

@@ -147,7 +147,7 @@ fn an_event_that_does_not_come_is_named() {
     assert!((nearest - (2.0 - 16.0 / 19.62)).abs() < 1e-4, "{nearest}");
     let text = failure.to_string();
     assert!(
-        text.contains("the position that ends the run does not reach 2 within 3 s"),
+        text.contains("the position of the event does not reach 2 within 3 s"),
         "{text}"
     );
 }

@@ -576,3 +576,18 @@ fn what_is_off_bears_nothing() {
         assert!(bears || value == 0.0, "{name}: {value}");
     }
 }
+
+/// A body that an event meets in the origin has no size but its way.
+#[test]
+fn events_in_the_origin_do_not_end_the_motion() {
+    let file = json!({
+        "version": 1, "name": "thrown", "gravity": [0, -10, 0],
+        "bodies": {"b": {"shape": {"sphere": {"radius": 0.1}}, "mass": 1, "velocity": {"linear": [0, 2, 0]}}},
+        "events": {"e": {"when": {"measure": {"position": {"body": "b", "direction": [0, 1, 0]}}, "reaches": 0}}},
+        "simulation": {"duration": 1},
+        "functions": {"y": {"final": {"position": {"body": "b", "direction": [0, 1, 0]}}}}
+    });
+    let own = problem(&file);
+    let found = simulated(&own).value(number(&own, "y"));
+    assert!((found + 3.0).abs() < 1e-6, "{found}");
+}

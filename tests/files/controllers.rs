@@ -573,6 +573,93 @@ fn vibrations_about_rest_have_states() {
     }
 }
 
+/// Rotors turn with their joints from the start, however these get their rates.
+#[test]
+fn rotors_start_with_their_joints() {
+    let own = json!({"feed_forward": 0, "motor": {"gear_ratio": 5, "rotor_inertia": 0.01}});
+    let mut file = disk(own, 0.1);
+    file["functions"] = json!({
+        "rate": final_of(json!({"angle_rate": {"joint": "axle"}})), "energy": final_of(json!({"energy": "kinetic"}))
+    });
+    let energy = 0.5 * (ABOUT + 0.25) * 4.0;
+    for start in ["joint", "body", "all", "gear"] {
+        let mut own = file.clone();
+        match start {
+            "body" => own["bodies"]["disk"]["velocity"] = json!({"angular": [0, 0, 2]}),
+            "all" => own["initial_velocity"] = json!({"angular": [0, 0, 2]}),
+            _ => own["joints"]["axle"]["revolute"]["start"] = json!({"turn": {"rate": 2}}),
+        }
+        let mut expected = energy;
+        if start == "gear" {
+            own["bodies"]["wheel"] = json!({"mass": 1, "inertia": {"xx": 1, "yy": 1, "zz": 0.3}, "place": {"at": [1, 0, 0]}});
+            own["joints"]["other"] = hinge(["wheel", "ground"], json!([1, 0, 0]));
+            own["couplings"] =
+                json!({"mesh": {"gear": {"gears": ["disk", "wheel"], "teeth": [10, 20]}}});
+            expected += 0.5 * 0.3;
+        }
+        let found = values(&own);
+        assert_near(found[0], 2.0, 1e-9);
+        assert_near(found[1], expected, 1e-9);
+    }
+}
+
+/// The closed loop alone tells whether a rest with states of controllers is stable, at every reference.
+#[test]
+fn closed_loops_are_stable_or_not() {
+    let at = |reference: f64, rotor: f64, d: f64, k: f64| {
+        let own = json!({"reference": reference, "proportional": 400, "derivative": d, "integral": k,
+                         "motor": {"gear_ratio": 50, "rotor_inertia": rotor}});
+        let mut file = held(own);
+        file["functions"]["f"] = json!({"frequency": {"mode": 1}});
+        file["functions"]["z"] = json!({"damping_ratio": {"mode": 1}});
+        let own = parsed(&file);
+        let growth = own.stability_at_rest(&own.start()).expect("a rest").growth;
+        (growth, values(&file))
+    };
+    for rotor in [0.0, 1e-4] {
+        for k in -15..15 {
+            let reference = 0.1 * f64::from(k);
+            let (growth, found) = at(reference, rotor, 30.0, 900.0);
+            assert_eq!(growth, None, "{reference}");
+            assert_near(found[0], reference, 1e-9);
+            assert!(found[4] > 0.5, "{found:?}");
+        }
+    }
+    let (growth, found) = at(-0.3, 1e-4, 1.0, 12000.0);
+    let about = 2.0 * (1.0 / 3.0 + 1e-4 / 4.0) + 0.25;
+    let matrix = DMatrix::from_row_slice(
+        3,
+        3,
+        &[
+            0.0,
+            1.0,
+            0.0,
+            (-400.0 + 9.81 * (-0.3_f64).sin()) / about,
+            -1.0 / about,
+            1.0 / about,
+            -12000.0,
+            0.0,
+            0.0,
+        ],
+    );
+    let poles = matrix.complex_eigenvalues();
+    let fastest = poles.iter().map(|s| s.re).fold(f64::NEG_INFINITY, f64::max);
+    assert_near(growth.expect("a growth"), fastest, 1e-8);
+    assert!(found[4] < -0.2, "{found:?}");
+}
+
+/// At rest the angle of a joint has the turns that its loads count.
+#[test]
+fn angles_at_rest_have_their_turns() {
+    for reference in [7.0, 10.0, -7.0] {
+        let mut file = held(json!({"reference": reference, "proportional": 50}));
+        file["variables"]["reference"]["upper"] = json!(20);
+        file["variables"]["reference"]["lower"] = json!(-20);
+        let found = values(&file);
+        assert_near(found[0] + found[2], reference, 1e-9);
+    }
+}
+
 /// At rest a motor that its limits do not let hold the machine is told.
 #[test]
 fn weak_motors_are_told_at_rest() {

@@ -278,7 +278,7 @@ pub enum IntegrationFailure {
     },
     /// The event that ends the run does not occur, or not where it occurred for earlier designs.
     #[error(
-        "the {quantity} that ends the run does not reach {value} within {waited} s: it comes as \
+        "the {quantity} of the event does not reach {value} within {waited} s: it comes as \
          near as {nearest:.3e}"
     )]
     NotReached {
@@ -293,7 +293,7 @@ pub enum IntegrationFailure {
     },
     /// The quantity that ends the run touches its value and turns back.
     #[error(
-        "the {quantity} that ends the run only touches {value} at t = {time:.6e} s and turns back: the \
+        "the {quantity} of the event only touches {value} at t = {time:.6e} s and turns back: the \
          time of such an event has no derivative, and at some designs nearby there is no event; choose \
          a value that it crosses"
     )]

@@ -22,6 +22,9 @@ pub struct Scale {
     pub elastic: Elastic,
 }
 
+/// Part of the way of a motion up to which places are in the origin but for round-off.
+const ORIGIN: f64 = 1e-9;
+
 /// What elastic coordinates count; by default there are none.
 #[derive(Clone, Debug, Default)]
 pub struct Elastic {
@@ -80,11 +83,16 @@ impl Scale {
         start: &InitialState<S>,
         duration: f64,
     ) -> Self {
-        let length = placement::length_scale(model);
         let gravity = largest(model.gravity.as_slice());
-        let fall = (gravity * length).sqrt();
         let elastic = Elastic::of(model);
         let [speed, spin] = fastest(numbering, &elastic, &start.v);
+        let way = speed * duration + 0.5 * gravity * duration * duration;
+        // Bodies that are in the origin but for round-off have no size.
+        let length = match placement::length_scale(model) {
+            length if length > ORIGIN * way => length,
+            _ => way,
+        };
+        let fall = (gravity * length).sqrt();
         let drift = if fall > 0.0 { fall } else { length / duration };
         Self {
             length,

@@ -119,6 +119,8 @@ impl<S: Scalar> Model<S> {
         let body = self.bodies.len();
         let mut own = RigidBody::massless(format!("{name}, motion of {}", motion.joint.name));
         own.mass = inertia;
+        // An inertia that lags behind would take part in a jump at the start.
+        own.velocity.x = self.rate_of(&motion.joint, motion.dof);
         own.mobility = Mobility::carrier(1);
         own.role = Role::Coordinate;
         self.bodies.push(own);
@@ -177,6 +179,28 @@ impl<S: Scalar> Model<S> {
             DegreeOfFreedom::Translation => frame.point += e3 * place,
         }
         frame
+    }
+
+    /// The rate of [`Model::place_of`] \[rad/s or m/s\].
+    fn rate_of(&self, joint: &Joint<S>, dof: DegreeOfFreedom) -> S {
+        let motion = |body: Option<usize>, point: &Vec3<S>| match body.map(|b| &self.bodies[b]) {
+            Some(own) => {
+                let turned = rotation::matrix(&own.orientation);
+                let (arm, spin) = (turned * point, turned * own.angular_velocity);
+                (own.position + arm, own.velocity + spin.cross(&arm), spin)
+            }
+            None => (*point, Vec3::zeros(), Vec3::zeros()),
+        };
+        let (a, speed_a, spin_a) = motion(Some(joint.body_a), &joint.frame_a.point);
+        let (b, speed_b, spin_b) = motion(joint.body_b, &joint.frame_b.point);
+        let turned = rotation::matrix(&self.bodies[joint.body_a].orientation);
+        let axis = turned * joint.frame_a.axes[2];
+        match dof {
+            DegreeOfFreedom::Rotation => axis.dot(&(spin_a - spin_b)),
+            DegreeOfFreedom::Translation => {
+                axis.dot(&(speed_a - speed_b)) + spin_a.cross(&axis).dot(&(a - b))
+            }
+        }
     }
 
     /// Where frame A of a joint is in frame B at the placement: its angle about e3 in (−π, π] \[rad\], or how far it is along e3

@@ -1,7 +1,7 @@
 //! Couplings.
 
 use super::Checker;
-use crate::couplings::{carrier, moved, observed, ordered, turns, way};
+use crate::couplings::{carrier, dof as motion_dof, moved, observed, ordered, turns, way};
 use crate::finding::Finding;
 use crate::model::{DegreeOfFreedom, JointKind};
 use crate::placement::GROUND;
@@ -67,6 +67,28 @@ impl Checker<'_> {
                     self.moving_joint(&join(&place, "slide"), joint, DegreeOfFreedom::Translation)
                 }
             }
+        }
+        let (name, dof) = (own.follower.joint(), motion_dof(&own.follower));
+        let start = self
+            .document
+            .joints
+            .get(name)
+            .and_then(|joint| joint.start());
+        let driven = self.document.drives.values().any(|drive| {
+            let moves = match dof {
+                DegreeOfFreedom::Rotation => drive.turn.is_some(),
+                DegreeOfFreedom::Translation => drive.slide.is_some(),
+            };
+            drive.joint == *name && moves
+        });
+        let found = match start.and_then(|start| start.of(dof)) {
+            Some(_) => Some("a follower with a start of its own"),
+            None if driven => Some("a follower that a drive moves"),
+            None => None,
+        };
+        if let Some(found) = found {
+            let expected = "a start or drive of the cam: it tells where the follower is, and not the other way round";
+            self.fault(Finding::new(join(pointer, "follower"), found, expected));
         }
         if own.cam == own.follower {
             let found = "the motion on which the profile depends";

@@ -193,3 +193,18 @@ fn variables_of_places_on_shells_and_bodies_from_files_are_refused() {
         &["/bodies/arm/modal/scale", "/bodies/arm/place/at/0"],
     );
 }
+
+/// Of very many faults the first are told, and how many there are.
+#[test]
+fn very_many_faults_are_counted() {
+    let body = |k: usize| (format!("b{k}"), json!({"mass": -1, "weight": 2}));
+    let bodies: serde_json::Map<String, Value> = (0..60).map(body).collect();
+    let file = json!({
+        "version": 1, "name": "many", "bodies": bodies, "simulation": {"duration": 1},
+        "functions": {"t": "duration"}
+    });
+    let found = told(&file);
+    let told_of = found.matches("/bodies/b").count();
+    assert!((30..=41).contains(&told_of), "{found}");
+    assert!(found.trim_end().ends_with("more faults"), "{found}");
+}

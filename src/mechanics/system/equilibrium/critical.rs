@@ -33,6 +33,8 @@ const ITERATIONS: usize = 40;
 /// The inertia of a motion without stiffness, relative to that at the speed; squares of speeds are larger by the second factor.
 const LEAST: f64 = 1e-11;
 const ABOVE: f64 = 1e4;
+/// Speeds that are found with less round-off, relative to the speed at which N is.
+const LARGEST: f64 = 1e6;
 /// Number of speeds that are known.
 const KEPT: usize = 8;
 /// Relative change of a speed by which it is found.
@@ -189,10 +191,11 @@ fn at_equilibrium(
         let allowed = allowed - left_out.len();
         matrices.left_out = left_out;
         matrices.mass.values = turned;
-        let scales = (found.rate.sqrt(), free.sqrt());
+        // A motion along the axis has no part in N but its round-off, with a speed above these.
+        let scales = (found.rate.sqrt(), free.sqrt()..LARGEST * scale);
         let mut count = 2 * number + 2;
         loop {
-            let own = lowest(&matrices, scales, (count, allowed))?;
+            let own = lowest(&matrices, scales.clone(), (count, allowed))?;
             let speeds: Vec<Complex64> = (own.values.iter().copied())
                 .filter(|s| s.re.abs() <= IMAGINARY * s.norm())
                 .collect();

@@ -114,25 +114,26 @@ impl Solver<'_> {
         }
         let none = |why: String| Err(AssemblyFailure::NoModes { why });
         let turning = self.given.turning.as_ref();
-        if turning.is_none() {
+        let released = Released::of((self.model, self.layout.numbering), found)?;
+        // Damping ratios tell whether a closed loop is stable.
+        if turning.is_none() && released.is_none() {
             let stability = self.with_factors(found, |own| self.stability(own, found))??;
             if stability.growth.is_some() {
                 return none("it is not stable".into());
             }
         }
-        let released = Released::of((self.model, self.layout.numbering), found)?;
         let at = match &released {
             Some(own) => own.at(),
             None => At::rest(self.layout, self.model, found, turning),
         };
         let matrices = Matrices::new(at, damped);
         let allowed = at.freedom();
-        let scales = (found.rate.sqrt(), (FREE * found.rate).sqrt());
+        let scales = (found.rate.sqrt(), (FREE * found.rate).sqrt()..f64::INFINITY);
         // An aggregate needs one.
         let asked = wanted.count.max(1);
         let mut count = wanted.least().max(1);
         let values = loop {
-            let own = lowest(&matrices, scales, (count, allowed))?;
+            let own = lowest(&matrices, scales.clone(), (count, allowed))?;
             let there = own.values.len();
             if own.all && there < asked && all_needed {
                 return none(format!("mode {asked} is asked for, and there are {there}"));

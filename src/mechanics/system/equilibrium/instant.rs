@@ -81,7 +81,7 @@ fn spectrum(state: &InstantState<f64>, number: usize) -> Result<Spectrum, Assemb
     let at = state.at();
     let matrices = Matrices::new(at, true);
     let rate = rate(state);
-    let scales = (rate.sqrt(), (FREE * rate).sqrt());
+    let scales = (rate.sqrt(), (FREE * rate).sqrt()..f64::INFINITY);
     let count = number + 1 + SPARE;
     let found = lowest(&matrices, scales, (count, at.freedom()))?;
     let values: Vec<Complex64> = found.values.into_iter().take(count).collect();

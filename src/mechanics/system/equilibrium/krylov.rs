@@ -14,6 +14,7 @@ use crate::math::Complex64;
 use crate::math::slices::{add_scaled, dot};
 use crate::system::failure::AssemblyFailure;
 use nalgebra::DMatrix;
+use std::ops::Range;
 
 /// Vectors that start.
 const STARTS: usize = 4;
@@ -28,6 +29,8 @@ const CONVERGED: f64 = 1e-6;
 /// σ, as a part of the largest eigenvalue that is wanted; and eigenvalues that count, relative to it.
 const PART: f64 = 0.25;
 const FREE: f64 = 1e-5;
+/// Part of a rate by which it may grow by round-off.
+const GROWS: f64 = 1e-6;
 
 /// Eigenvalues with positive imaginary part by size |s|.
 pub(super) struct Found {
@@ -137,8 +140,8 @@ impl Space<'_> {
         self.columns.len() < self.most
     }
 
-    /// The eigenvalues s in the present space, those with positive imaginary part, by size.
-    fn values(&self, least: f64) -> Option<Vec<Complex64>> {
+    /// The eigenvalues s in the present space.
+    fn rates(&self) -> Option<Vec<Complex64>> {
         let k = self.columns.len();
         let entry = |i: usize, j: usize| self.columns[j].get(i).copied().unwrap_or(0.0);
         let h = DMatrix::from_fn(k, k, entry);
@@ -148,25 +151,34 @@ impl Space<'_> {
         let largest = h.norm();
         let schur = schur(&h)?;
         let values = schur.complex_eigenvalues();
-        let mut out: Vec<Complex64> = (values.iter())
-            // Zero: what has no inertia.
-            .filter(|x| x.norm() > f64::EPSILON * largest && x.im != 0.0)
-            .map(|x| Complex64::new(self.shift, 0.0) + 1.0 / Complex64::new(x.re, x.im))
-            .filter(|s| s.im > 0.0 && s.norm() > least)
-            .collect();
+        // Zero: what has no inertia.
+        let values = (values.iter()).filter(|x| x.norm() > f64::EPSILON * largest);
+        let rates = values.map(|x| {
+            let reciprocal = 1.0 / Complex64::new(x.re, x.im);
+            let im = if x.im == 0.0 { 0.0 } else { reciprocal.im };
+            Complex64::new(self.shift + reciprocal.re, im)
+        });
+        Some(rates.collect())
+    }
+
+    /// Those with positive imaginary part, by size.
+    fn values(&self, sizes: &Range<f64>) -> Option<Vec<Complex64>> {
+        let all = self.rates()?.into_iter();
+        let counts = |s: &Complex64| s.im > 0.0 && s.norm() > sizes.start && s.norm() < sizes.end;
+        let mut out: Vec<Complex64> = all.filter(counts).collect();
         out.sort_by(|a, b| a.norm().total_cmp(&b.norm()));
         Some(out)
     }
 }
 
-/// The eigenvalues of least size above `least` with positive imaginary part, at least `count` of them if there are as many.
+/// The eigenvalues of least size within `sizes` with positive imaginary part, at least `count` of them if there are as many.
 /// The joints allow `allowed` independent motions.
 ///
 /// # Errors
 /// Singular equations, or no convergence.
 pub(super) fn lowest(
     matrices: &Matrices,
-    (shift, least): (f64, f64),
+    (shift, sizes): (f64, Range<f64>),
     (count, allowed): (usize, usize),
 ) -> Result<Found, AssemblyFailure> {
     if allowed == 0 {
@@ -175,18 +187,22 @@ pub(super) fn lowest(
             all: true,
         });
     }
-    let first = search(matrices, (shift, least), (count, allowed))?;
+    let first = search(matrices, (shift, &sizes), (count, allowed))?;
     let reach = first.values.iter().take(count).map(|s| s.norm());
     let reach = reach.fold(0.0, f64::max);
     // Free motions have s = 0 twice, which round-off divides by much where σ is too small for the stiffness.
-    let scales = ((PART * reach).max(shift), least.max(FREE * reach));
-    search(matrices, scales, (count, allowed))
+    let counted = sizes.start.max(FREE * reach)..sizes.end;
+    search(
+        matrices,
+        ((PART * reach).max(shift), &counted),
+        (count, allowed),
+    )
 }
 
 /// The same by one shift.
 fn search(
     matrices: &Matrices,
-    (shift, least): (f64, f64),
+    (shift, sizes): (f64, &Range<f64>),
     (count, allowed): (usize, usize),
 ) -> Result<Found, AssemblyFailure> {
     let factors = (matrices.factors(shift)).map_err(|_| AssemblyFailure::Singular)?;
@@ -203,7 +219,7 @@ fn search(
     let mut before: Vec<Complex64> = Vec::new();
     loop {
         let more = space.grow(dimension.min(2 * allowed));
-        let values = space.values(least).ok_or(AssemblyFailure::Singular)?;
+        let values = space.values(sizes).ok_or(AssemblyFailure::Singular)?;
         if !more {
             return Ok(Found { values, all: true });
         }
@@ -224,4 +240,30 @@ fn search(
         before = values;
         dimension *= GROWTH;
     }
+}
+
+/// The fastest growth Re s of motions whose rate is above `least`, of all that the joints allow or of those of least size if
+/// there are very many; `None` if none grows.
+///
+/// # Errors
+/// Singular equations.
+pub(super) fn growth(
+    matrices: &Matrices,
+    (shift, least): (f64, f64),
+    allowed: usize,
+) -> Result<Option<f64>, AssemblyFailure> {
+    let factors = (matrices.factors(shift)).map_err(|_| AssemblyFailure::Singular)?;
+    let mut space = Space {
+        matrices,
+        factors,
+        shift,
+        basis: Vec::new(),
+        columns: Vec::new(),
+        drawn: 0,
+        most: 2 * allowed,
+    };
+    space.grow((2 * allowed).min(LARGEST));
+    let rates = space.rates().ok_or(AssemblyFailure::Singular)?.into_iter();
+    let growing = rates.filter(|s| s.norm() > least && s.re > GROWS * s.norm());
+    Ok(growing.map(|s| s.re).reduce(f64::max))
 }

@@ -11,7 +11,9 @@
 //! Positions and the reactions of joints stay. So the machine is in the state of a motion at an instant, at which it rests.
 
 use super::equations::State;
-use super::pencil::{At, Moves};
+use super::krylov::growth;
+use super::pencil::{At, Matrices, Moves};
+use super::rest::FREE;
 use crate::math::Scalar;
 use crate::model::controller::Coordinate;
 use crate::model::{DegreeOfFreedom, LoadKind, Model};
@@ -106,6 +108,18 @@ impl<S: Scalar> Released<S> {
                 time: S::zero(),
             },
         }
+    }
+}
+
+impl Released<f64> {
+    /// The fastest growth of a disturbance \[1/s\] about a rest with a rate \[1/s²\]; `None` if none grows.
+    ///
+    /// # Errors
+    /// Singular equations.
+    pub(super) fn growth(&self, rate: f64) -> Result<Option<f64>, AssemblyFailure> {
+        let at = self.at();
+        let scales = (rate.sqrt(), (FREE * rate).sqrt());
+        growth(&Matrices::new(at, true), scales, at.freedom())
     }
 }
 

@@ -9,6 +9,7 @@
 use super::equations::State;
 use super::matrix::{Factors, RigidMetric};
 use super::pencil::{At, Matrices, diagonal};
+use super::released::Released;
 use super::ritz::ritz_vectors;
 use super::{KnownStarts, Solver, Sought, at_solution};
 use crate::math::slices::{add_scaled, dot};
@@ -168,8 +169,13 @@ impl Solver<'_> {
             snapped: found.snapped,
             ..Stability::default()
         };
+        let released = Released::of((self.model, self.layout.numbering), found)?;
+        if let Some(released) = &released {
+            out.growth = released.growth(found.rate)?;
+        }
         for (stiffness, y) in self.soft_motions(factors, found)? {
-            if stiffness < -FREE * found.rate {
+            // With the states of controllers the machine is another.
+            if released.is_none() && stiffness < -FREE * found.rate {
                 let rate = (-stiffness).sqrt();
                 out.growth = Some(out.growth.map_or(rate, |other| other.max(rate)));
             } else if stiffness <= FREE * found.rate {
@@ -264,6 +270,11 @@ impl Solver<'_> {
     ) -> Result<Vec<(f64, Vec<f64>)>, AssemblyFailure> {
         let layout = self.layout;
         let n = layout.numbering.unknowns();
+        // Beyond the motions that the joints allow there is round-off alone.
+        let allowed = At::rest(layout, self.model, found, None).freedom();
+        if allowed == 0 {
+            return Ok(Vec::new());
+        }
         let motions = layout.at_rest(&found.q);
         let weighted = |y: &[f64]| self.metric_product(&motions, y);
         let shift = self.least_shift(found);
@@ -276,8 +287,8 @@ impl Solver<'_> {
         };
         // 1 / (λ + σ) is negative, or about 1 / σ and more, where λ is not positive.
         let counts = |value: f64, _: f64| value < 0.0 || value * shift > 0.5;
-        let soft =
-            ritz_vectors(softened, weighted, (n, n), counts).ok_or(AssemblyFailure::Singular)?;
+        let soft = ritz_vectors(softened, weighted, (n, allowed), counts)
+            .ok_or(AssemblyFailure::Singular)?;
         let along = layout.along(self.model, self.given, found);
         let stiffness = |(_, y): (f64, Vec<f64>)| {
             let mut change = y.clone();
