@@ -100,6 +100,7 @@ __all__ = [
     "Motion",
     "BushingStiffness",
     "BushingDamping",
+    "Wheel",
     "Surface2",
     "ContactFriction",
     "CablePoint",
@@ -121,6 +122,8 @@ __all__ = [
     "Turning",
     "Coupling",
     "Term",
+    "JointMotion",
+    "Profile",
     "TerminalEvent",
     "Quantity",
     "EnergyKind",
@@ -210,6 +213,7 @@ __all__ = [
     "force_table",
     "bushing_stiffnesses",
     "bushing_dampings",
+    "wheel",
     "surface2s",
     "contact_friction",
     "cable_point",
@@ -226,6 +230,8 @@ __all__ = [
     "turning",
     "couplings",
     "term",
+    "joint_motions",
+    "profile",
     "terminal_event",
     "quantities",
     "power_ofs",
@@ -552,6 +558,12 @@ class BushingDamping(Part):
     __slots__ = ()
 
 
+class Wheel(Part):
+    """A wheel: a torus. Made by `wheel`."""
+
+    __slots__ = ()
+
+
 class Surface2(Part):
     """Surface of a contact. Directions are in ground axes at the start and fixed in the body. Made by `surface2s`."""
 
@@ -650,6 +662,22 @@ class Coupling(Part):
 
 class Term(Part):
     """A motion of a joint with its factor. Made by `term`."""
+
+    __slots__ = ()
+
+
+class JointMotion(Part):
+    """A motion of a joint: that of its first body against the second (ground counts as the second). Made by
+    `joint_motions`.
+    """
+
+    __slots__ = ()
+
+
+class Profile(Part):
+    """A function that is twice continuously differentiable, level at both ends and constant beyond. Made by
+    `profile`.
+    """
 
     __slots__ = ()
 
@@ -1706,6 +1734,20 @@ def force_table(*, places: Vector, forces: Vector, interpolation: Interpolation 
 
 
 @checked
+def wheel(*, axis: Vector, radius: Real) -> Wheel:
+    """A wheel: a torus.
+
+    Parameters
+    ----------
+    axis : numbers, shape (3,)
+        Its axis, of any length but zero, in ground axes at the start and fixed in the body.
+    radius : number above 0 [m]
+        Radius of the circle; that of the whole wheel is larger by the `radius` of the contact.
+    """
+    return made(Wheel, "wheel", locals())
+
+
+@checked
 def contact_friction(*, coefficient: Real, width: Real) -> ContactFriction:
     """Friction of a contact.
 
@@ -1789,6 +1831,7 @@ def balanced(*, body: str, mass: Real, point: Point | None = None) -> Balanced:
 def motor(
     *,
     gear_ratio: Real | None = None,
+    rotor_inertia: Real | None = None,
     torque: Real | None = None,
     curve: Curve | None = None,
     power: Real | None = None,
@@ -1802,6 +1845,9 @@ def motor(
     gear_ratio : number above 0 [rad/m or 1], optional
         Turns of the motor for one of the joint, default 1; of a slide or distance the angle of the motor for a
         metre, 1 of a linear motor.
+    rotor_inertia : number at least 0 [kg m² (kg of a linear motor)], optional
+        Inertia of what turns with the motor, default none. Through the gear the joint feels its product with the
+        square of `gear_ratio`; that the motor also turns with the body on which it sits is left out.
     torque : number above 0 [N m], optional
         Largest torque of the motor (force of a linear motor), as by its current; default none.
     curve : `curve(…)`, optional
@@ -1860,6 +1906,25 @@ def term(*, joint: str, turn: Real | None = None, slide: Real | None = None) -> 
         Factor of the displacement along the axis, instead of `turn`.
     """
     return made(Term, "term", locals())
+
+
+@checked
+def profile(*, at: Vector, values: Vector, interpolation: Interpolation | None = None) -> Profile:
+    """A function that is twice continuously differentiable, level at both ends and constant beyond.
+
+    Parameters
+    ----------
+    at : numbers, shape (n,) [m or rad]
+        Values of the motion of the cam, ascending.
+    values : numbers, shape (n,) [m or rad]
+        The motion of the follower at each.
+    interpolation : "linear" or "monotone" or "spline", optional
+        Interpolation between them, default spline.
+        "linear": Straight lines. Those of a motion are rounded at their ends, so accelerations stay finite.
+        "monotone": Smooth without overshoot.
+        "spline": As smooth as the values. It may overshoot.
+    """
+    return made(Profile, "profile", locals())
 
 
 @checked
@@ -3230,6 +3295,7 @@ class loads(Kinds):
         stiffness: Real,
         width: Real,
         radius: Real | None = None,
+        wheel: Wheel | None = None,
         dissipation: Real | None = None,
         exponent: Real | None = None,
         friction: ContactFriction | None = None,
@@ -3253,6 +3319,8 @@ class loads(Kinds):
             finer steps.
         radius : number at least 0 [m], optional
             Radius of the sphere, default 0: a point.
+        wheel : `wheel(…)`, optional
+            Of a wheel on a plane: the circle of the centres, about `at`, of the spheres that are its tyre.
         dissipation : number at least 0 [s/m], optional
             Dissipation c: at small speeds v of impact the rebound has 1 − c v of it; default 0.
         exponent : number at least 1, optional
@@ -3635,6 +3703,20 @@ class surface2s(Kinds):
             Its radius.
         """
         return made(Surface2, "surface2s.capsule", locals())
+
+    @staticmethod
+    @checked
+    def box(*, size: Vector, radius: Real | None = None) -> Surface2:
+        """A box along the axes of its body, those of ground if it is ground's.
+
+        Parameters
+        ----------
+        size : numbers, shape (3,) above 0 [m]
+            Its edges.
+        radius : number at least 0 [m], optional
+            Radius of its edges, default 0: sharp ones. It is within `size`.
+        """
+        return made(Surface2, "surface2s.box", locals())
 
 
 class sliding(Kinds):
@@ -4186,6 +4268,48 @@ class couplings(Kinds):
             start.
         """
         return made(Coupling, "couplings.relation", locals())
+
+    @staticmethod
+    @checked
+    def cam(*, cam: JointMotion, follower: JointMotion, profile: Profile) -> Coupling:
+        """A motion that is a function of another.
+
+        Parameters
+        ----------
+        cam : one of `joint_motions`
+            The motion on which the profile depends.
+        follower : one of `joint_motions`
+            The motion that follows it.
+        profile : `profile(…)`
+            The motion of the follower by that of the cam.
+        """
+        return made(Coupling, "couplings.cam", locals())
+
+
+class joint_motions(Kinds):
+    """A motion of a joint: that of its first body against the second (ground counts as the second)."""
+
+    @staticmethod
+    @checked
+    def turn(value: str, /) -> JointMotion:
+        """The angle of this revolute, planar or cylindrical joint.
+
+        Parameters
+        ----------
+        value : text
+        """
+        return made_of(JointMotion, "joint_motions.turn", value)
+
+    @staticmethod
+    @checked
+    def slide(value: str, /) -> JointMotion:
+        """The displacement of this prismatic or cylindrical joint.
+
+        Parameters
+        ----------
+        value : text
+        """
+        return made_of(JointMotion, "joint_motions.slide", value)
 
 
 class quantities(Kinds):

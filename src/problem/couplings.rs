@@ -14,7 +14,7 @@
 //!
 //! with P the place where the teeth meet and o_i a point of the axis, all as placed.
 
-use super::courses::course;
+use super::cams::{dof, written_profile};
 use super::placement::{Assembly, GROUND};
 use super::starting_angles::starting_angle;
 use crate::functions::whole_turns;
@@ -26,11 +26,10 @@ use crate::model::{
 };
 use crate::schema::Document;
 use crate::schema::couplings::{
-    Bevel, Cam, Coupling, JointMotion, OfCoupling, RackAndPinion, Relation, Term, Wheels,
+    Bevel, Cam, Coupling, OfCoupling, RackAndPinion, Relation, Term, Wheels,
 };
-use crate::schema::drives::TimeFunction as WrittenCourse;
 use crate::schema::joints::Joint;
-use crate::schema::loads::{Interpolation, Motion};
+use crate::schema::loads::Motion;
 use crate::schema::mechanics::Location;
 use std::collections::{BTreeMap, VecDeque};
 use std::f64::consts::TAU;
@@ -415,14 +414,6 @@ pub(super) struct Followed<S> {
     pub axis: Vec3<S>,
 }
 
-/// The degree of freedom of a motion.
-pub(super) fn dof(of: &JointMotion) -> DegreeOfFreedom {
-    match of {
-        JointMotion::Turn(_) => DegreeOfFreedom::Rotation,
-        JointMotion::Slide(_) => DegreeOfFreedom::Translation,
-    }
-}
-
 /// By how much the placement misses the constant of a relation that has one.
 fn miss<S: Scalar>(
     assembly: &Assembly<S>,
@@ -445,17 +436,6 @@ fn miss<S: Scalar>(
     let terms = relation.terms.iter();
     let placed = terms.fold(S::zero(), |sum, term| sum + of(term));
     assembly.quantity(constant) - placed
-}
-
-/// The profile of a cam, of motions as functions measure them.
-pub(super) fn written_profile<S: Scalar>(assembly: &Assembly<S>, cam: &Cam) -> TimeFunction<S> {
-    let own = &cam.profile;
-    let written = WrittenCourse::Table(
-        &own.at,
-        &own.values,
-        Some(own.interpolation.unwrap_or(Interpolation::Spline)),
-    );
-    course(assembly, written)
 }
 
 /// The profile of a cam between motions that count from the placement.

@@ -1,6 +1,6 @@
 //! The angles with which joints and bodies start, whole turns included.
 
-use super::couplings::{dof, written_profile};
+use super::cams::{dof, written_profile};
 use super::joints::drives;
 use super::placement::{Assembly, GROUND};
 use crate::math::{Scalar, Vec3};

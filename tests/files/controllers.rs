@@ -610,6 +610,8 @@ fn closed_loops_are_stable_or_not() {
         let own = json!({"reference": reference, "proportional": 400, "derivative": d, "integral": k,
                          "motor": {"gear_ratio": 50, "rotor_inertia": rotor}});
         let mut file = held(own);
+        file["variables"]["reference"]["lower"] = json!(-2);
+        file["variables"]["reference"]["upper"] = json!(2);
         file["functions"]["f"] = json!({"frequency": {"mode": 1}});
         file["functions"]["z"] = json!({"damping_ratio": {"mode": 1}});
         let own = parsed(&file);

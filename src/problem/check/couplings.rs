@@ -1,7 +1,8 @@
 //! Couplings.
 
 use super::Checker;
-use crate::couplings::{carrier, dof as motion_dof, moved, observed, ordered, turns, way};
+use crate::cams::dof as motion_dof;
+use crate::couplings::{carrier, moved, observed, ordered, turns, way};
 use crate::finding::Finding;
 use crate::model::{DegreeOfFreedom, JointKind};
 use crate::placement::GROUND;

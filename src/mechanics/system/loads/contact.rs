@@ -85,12 +85,13 @@ fn state<S: Scalar>(contact: &Contact<S>, at: &Acting<S>) -> State<S> {
         Surface::Plane { normal } => {
             let normal = turned(normal);
             let down = contact.wheel.as_ref().map(|own| lowest(own, at, &normal));
-            let x = match (&contact.wheel, &down) {
-                (Some(own), Some((down, _))) => y + down * own.radius,
-                _ => y,
+            let centre = match (&contact.wheel, &down) {
+                (Some(own), Some((down, _))) => p + down * own.radius,
+                _ => p,
             };
+            let x = centre - o;
             let distance = normal.dot(&x);
-            let place = o + x - normal * contact.radius;
+            let place = centre - normal * contact.radius;
             return State {
                 x,
                 distance,
