@@ -782,6 +782,10 @@ fn bad_controllers_are_told() {
         &["gravity_compensation/0", "ground"],
     );
     told(
+        json!({"between": ["disk", "ground"], "at": [[1, 0, 0], [3, 0, 0]], "motor": {"rotor_inertia": 1}}),
+        &["motor/rotor_inertia", "a rotor turns with a joint"],
+    );
+    told(
         json!({"joint": "axle", "motor": {"torque": 0}}),
         &["torque", "above 0"],
     );

@@ -22,8 +22,8 @@ pub struct Scale {
     pub elastic: Elastic,
 }
 
-/// Part of the way of a motion up to which places are in the origin but for round-off.
-const ORIGIN: f64 = 1e-9;
+/// Part of the way of a motion, at its speed and falling, up to which places are in the origin but for round-off.
+const ORIGIN: f64 = 1e-13;
 
 /// What elastic coordinates count; by default there are none.
 #[derive(Clone, Debug, Default)]

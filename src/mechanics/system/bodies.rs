@@ -334,9 +334,10 @@ fn pull_force_balance(
     cot: &mut RigidBody<f64>,
     gravity_cot: &mut Vec3<f64>,
 ) -> Vec3<f64> {
-    cot.mass += psi_r.dot(acceleration);
-    if !body.role.is_abstract() {
-        cot.mass -= psi_r.dot(gravity);
+    if body.role.is_abstract() {
+        cot.mass += psi_r.dot(acceleration);
+    } else {
+        cot.mass += psi_r.dot(&(acceleration - gravity));
         *gravity_cot -= psi_r * body.mass;
     }
     let turned = psi_theta.cross(omega);

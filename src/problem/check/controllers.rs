@@ -37,6 +37,12 @@ impl Checker<'_> {
         }
         self.controller_at_rest(pointer, own);
         let motor = own.motor.as_ref();
+        if own.between.is_some() && motor.is_some_and(|motor| motor.rotor_inertia.is_some()) {
+            let found = "the rotor of a motor that moves a distance";
+            let expected = "none: a rotor turns with a joint";
+            let place = join(&join(pointer, "motor"), "rotor_inertia");
+            self.fault(Finding::new(place, found, expected).of_key());
+        }
         let limited = motor.is_some_and(|motor| {
             motor.torque.is_some() || motor.curve.is_some() || motor.power.is_some()
         });

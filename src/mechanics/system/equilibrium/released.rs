@@ -13,7 +13,6 @@
 use super::equations::State;
 use super::krylov::growth;
 use super::pencil::{At, Matrices, Moves};
-use super::rest::FREE;
 use crate::math::Scalar;
 use crate::model::controller::Coordinate;
 use crate::model::{DegreeOfFreedom, LoadKind, Model};
@@ -112,13 +111,12 @@ impl<S: Scalar> Released<S> {
 }
 
 impl Released<f64> {
-    /// The fastest growth of a disturbance \[1/s\] about a rest with a rate \[1/s²\]; `None` if none grows.
+    /// The fastest growth of a disturbance \[1/s\], with a shift and the least rate \[1/s\] that counts; `None` if none grows.
     ///
     /// # Errors
     /// Singular equations.
-    pub(super) fn growth(&self, rate: f64) -> Result<Option<f64>, AssemblyFailure> {
+    pub(super) fn growth(&self, scales: (f64, f64)) -> Result<Option<f64>, AssemblyFailure> {
         let at = self.at();
-        let scales = (rate.sqrt(), (FREE * rate).sqrt());
         growth(&Matrices::new(at, true), scales, at.freedom())
     }
 }

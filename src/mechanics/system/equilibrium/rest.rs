@@ -171,7 +171,8 @@ impl Solver<'_> {
         };
         let released = Released::of((self.model, self.layout.numbering), found)?;
         if let Some(released) = &released {
-            out.growth = released.growth(found.rate)?;
+            let scales = (found.rate.sqrt(), (FREE * found.rate).sqrt());
+            out.growth = released.growth(scales)?;
         }
         for (stiffness, y) in self.soft_motions(factors, found)? {
             // With the states of controllers the machine is another.
