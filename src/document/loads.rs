@@ -35,7 +35,7 @@ pub enum Load {
     /// Stops of a joint or of the distance of two points, which press back smoothly.
     Stop(Stop),
     /// A contact of a sphere or point of a body with a plane, sphere or capsule, with friction.
-    Contact(Contact),
+    Contact(Box<Contact>),
     /// A cable over frictionless pulleys, or a winch. It pulls and never presses.
     Cable(Cable),
     /// A pressure on shells of a body of `elements`, along the normals of the deformed surface.
