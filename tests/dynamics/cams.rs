@@ -1,7 +1,7 @@
 //! Cams: followers against drives with the same course, beads on curves with their energy and vibrations, starts, phases,
 //! derivatives by every method, and the same in other descriptions.
 
-use super::couplings::{close, turned};
+use super::couplings::{close, methods, turned};
 use super::phases::{simulated, whole};
 use crate::reference::documents::{problem as parsed, reversed, unlowered_values, values, vary};
 use crate::reference::gradients::{gradients_are_exact, gradients_of_expressions_are_exact};
@@ -132,15 +132,7 @@ fn beads_rest_and_vibrate_in_the_valley() {
 
 #[test]
 fn gradients_by_every_method() {
-    let methods = [
-        json!({"duration": 0.8, "tolerance": 1e-8}),
-        json!({"duration": 0.8, "steps": 60, "method": "dop853"}),
-        json!({"duration": 0.8, "tolerance": 1e-6, "method": {"radau": {"stages": 3}}}),
-        json!({"duration": 0.8, "steps": 80, "method": {"radau": {"stages": 2}}}),
-        json!({"duration": 0.8, "steps": 120, "method": {"bdf": {"order": 3}}}),
-        json!({"duration": 0.8, "steps": 120, "method": {"generalised_alpha": {"radius": 0.8}}}),
-    ];
-    for simulation in methods {
+    for simulation in methods() {
         let mut file = bead(simulation.clone());
         let values = "/couplings/wire/cam/profile/values";
         vary(

@@ -401,17 +401,21 @@ fn machine(simulation: Value) -> Value {
     })
 }
 
-#[test]
-fn gradients_by_every_method() {
-    let methods = [
+/// Every method, with chosen and given steps.
+pub fn methods() -> [Value; 6] {
+    [
         json!({"duration": 0.8, "tolerance": 1e-8}),
         json!({"duration": 0.8, "steps": 60, "method": "dop853"}),
         json!({"duration": 0.8, "tolerance": 1e-6, "method": {"radau": {"stages": 3}}}),
         json!({"duration": 0.8, "steps": 80, "method": {"radau": {"stages": 2}}}),
         json!({"duration": 0.8, "steps": 120, "method": {"bdf": {"order": 3}}}),
         json!({"duration": 0.8, "steps": 120, "method": {"generalised_alpha": {"radius": 0.8}}}),
-    ];
-    for simulation in methods {
+    ]
+}
+
+#[test]
+fn gradients_by_every_method() {
+    for simulation in methods() {
         let mut document = machine(simulation.clone());
         let paths = [
             "/couplings/bevel/bevel/at/0",
