@@ -100,9 +100,11 @@ __all__ = [
     "Motion",
     "BushingStiffness",
     "BushingDamping",
+    "BearingFriction",
     "Wheel",
     "Surface2",
     "ContactFriction",
+    "Stribeck",
     "CablePoint",
     "CableLength",
     "Sliding",
@@ -213,9 +215,11 @@ __all__ = [
     "force_table",
     "bushing_stiffnesses",
     "bushing_dampings",
+    "bearing_friction",
     "wheel",
     "surface2s",
     "contact_friction",
+    "stribeck",
     "cable_point",
     "sliding",
     "varying_pressures",
@@ -558,6 +562,14 @@ class BushingDamping(Part):
     __slots__ = ()
 
 
+class BearingFriction(Part):
+    """Friction of a bearing or guide: μ ρ N tanh(ω / w) against the rate ω of the turn about e3 or of the slide
+    along it, with N = √(f² + n²) − n by the force f of the bushing across e3. Made by `bearing_friction`.
+    """
+
+    __slots__ = ()
+
+
 class Wheel(Part):
     """A wheel: a torus. Made by `wheel`."""
 
@@ -572,6 +584,12 @@ class Surface2(Part):
 
 class ContactFriction(Part):
     """Friction of a contact. Made by `contact_friction`."""
+
+    __slots__ = ()
+
+
+class Stribeck(Part):
+    """Friction that falls from a static to a sliding coefficient: μ + (μ_s − μ) exp(−v_t²/v_s²). Made by `stribeck`."""
 
     __slots__ = ()
 
@@ -1734,6 +1752,36 @@ def force_table(*, places: Vector, forces: Vector, interpolation: Interpolation 
 
 
 @checked
+def bearing_friction(
+    *,
+    coefficient: Real,
+    width: Real,
+    load_width: Real,
+    motion: Motion | None = None,
+    radius: Real | None = None,
+) -> BearingFriction:
+    """Friction of a bearing or guide: μ ρ N tanh(ω / w) against the rate ω of the turn about e3 or of the slide
+    along it, with N = √(f² + n²) − n by the force f of the bushing across e3.
+
+    Parameters
+    ----------
+    coefficient : number at least 0
+        Coefficient of friction μ.
+    width : number above 0 [rad/s or m/s]
+        Rate w, at which 76 % of the friction acts.
+    load_width : number above 0 [N]
+        Force n, well above which N is the force across; it makes N smooth where the force vanishes.
+    motion : "turn" or "slide", optional
+        The motion with friction: `turn` (default) or `slide`.
+        "turn": Rotation about its axis.
+        "slide": Displacement along its axis.
+    radius : number above 0 [m], optional
+        Radius ρ of the bearing; not of a guide that slides.
+    """
+    return made(BearingFriction, "bearing_friction", locals())
+
+
+@checked
 def wheel(*, axis: Vector, radius: Real) -> Wheel:
     """A wheel: a torus.
 
@@ -1748,7 +1796,7 @@ def wheel(*, axis: Vector, radius: Real) -> Wheel:
 
 
 @checked
-def contact_friction(*, coefficient: Real, width: Real) -> ContactFriction:
+def contact_friction(*, coefficient: Real, width: Real, stribeck: Stribeck | None = None) -> ContactFriction:
     """Friction of a contact.
 
     Parameters
@@ -1758,8 +1806,25 @@ def contact_friction(*, coefficient: Real, width: Real) -> ContactFriction:
     width : number above 0 [m/s]
         Tangential velocity w at which 71 % of it acts. Below it the contact creeps instead of sticking. A smaller
         width is sharper and needs finer steps.
+    stribeck : `stribeck(…)`, optional
+        Friction that is larger at slow slip, default none.
     """
     return made(ContactFriction, "contact_friction", locals())
+
+
+@checked
+def stribeck(*, coefficient: Real, speed: Real) -> Stribeck:
+    """Friction that falls from a static to a sliding coefficient: μ + (μ_s − μ) exp(−v_t²/v_s²).
+
+    Parameters
+    ----------
+    coefficient : number at least 0
+        Coefficient μ_s without slip.
+    speed : number above 0 [m/s]
+        Velocity v_s at which 63 % of the difference is gone. It should be several times the `width` of the
+        friction.
+    """
+    return made(Stribeck, "stribeck", locals())
 
 
 @checked
@@ -3181,7 +3246,13 @@ class loads(Kinds):
 
     @staticmethod
     @checked
-    def bushing(*, joint: str, stiffness: BushingStiffness, damping: BushingDamping | None = None) -> Load:
+    def bushing(
+        *,
+        joint: str,
+        stiffness: BushingStiffness,
+        damping: BushingDamping | None = None,
+        friction: BearingFriction | None = None,
+    ) -> Load:
         """Linear elastic forces and torques of all relative motion in a joint, with damping.
 
         Parameters
@@ -3193,6 +3264,8 @@ class loads(Kinds):
             K.
         damping : one of `bushing_dampings`, optional
             C, default zero.
+        friction : `bearing_friction(…)`, optional
+            Friction of a bearing or guide by the force of the bushing across e3, default none.
         """
         return made(Load, "loads.bushing", locals())
 
@@ -3218,19 +3291,37 @@ class loads(Kinds):
 
     @staticmethod
     @checked
-    def drag(*, body: str, coefficient: Real, point: Point | None = None, width: Real | None = None) -> Load:
+    def drag(
+        *,
+        body: str,
+        coefficient: Real,
+        point: Point | None = None,
+        faces: str | None = None,
+        normal_coefficient: Real | None = None,
+        normal: Vector | None = None,
+        width: Real | None = None,
+    ) -> Load:
         """Quadratic drag on a point of a body: c |u|² u / √(|u|² + w²) against its velocity u.
 
         Parameters
         ----------
         body : text
             The body.
-        coefficient : number at least 0 [N s²/m²]
-            Half the density times the drag coefficient times the area: force by the square of the speed.
+        coefficient : number at least 0 [N s²/m² or N s²/m⁴]
+            Half the density times the drag coefficient times the area: force against the velocity by the square of
+            the speed; for shells without the area.
         point : text or numbers, shape (3,) [m], optional
             Where it acts, by name or in body axes; default the centre of mass.
             text: Name of one of the body's points.
             numbers, shape (3,) [m]: Coordinates in body axes from their origin.
+        faces : text, optional
+            Name of the set of shells on which it acts, of a body of elements. The coefficients are then those of an
+            area.
+        normal_coefficient : number at least 0 [N s²/m² or N s²/m⁴], optional
+            The same of the force along the normal of a plate or wing at the angle α, by the square of the speed times
+            sin α, default 0. Its part across the velocity is lift.
+        normal : numbers, shape (3,), optional
+            Normal of the plate, in ground axes at the start and fixed in the body. Shells have theirs.
         width : number above 0 [m/s], optional
             Speed w below which the drag goes smoothly to zero, default 0.001 m/s. Above it the drag is off by ½
             w²/u².
@@ -3296,6 +3387,7 @@ class loads(Kinds):
         width: Real,
         radius: Real | None = None,
         wheel: Wheel | None = None,
+        half: Vector | None = None,
         dissipation: Real | None = None,
         exponent: Real | None = None,
         friction: ContactFriction | None = None,
@@ -3321,6 +3413,10 @@ class loads(Kinds):
             Radius of the sphere, default 0: a point.
         wheel : `wheel(…)`, optional
             Of a wheel on a plane: the circle of the centres, about `at`, of the spheres that are its tyre.
+        half : numbers, shape (3,) [m], optional
+            Of a capsule: from its centre `at` to the centre of the sphere at one end, in ground axes at the start and
+            fixed in the body. On a plane both ends touch; spheres, capsules and boxes are touched where the axis is
+            nearest.
         dissipation : number at least 0 [s/m], optional
             Dissipation c: at small speeds v of impact the rebound has 1 − c v of it; default 0.
         exponent : number at least 1, optional
@@ -3717,6 +3813,35 @@ class surface2s(Kinds):
             Radius of its edges, default 0: sharp ones. It is within `size`.
         """
         return made(Surface2, "surface2s.box", locals())
+
+    @staticmethod
+    @checked
+    def height_field(
+        *,
+        normal: Vector,
+        direction: Vector,
+        along: Vector,
+        heights: Matrix,
+        across: Vector | None = None,
+    ) -> Surface2:
+        """Heights over a plane: a natural bicubic spline through the points of a grid, which goes on straight beyond its
+        edges. `at` is the origin of the grid.
+
+        Parameters
+        ----------
+        normal : numbers, shape (3,)
+            Direction of the heights, to the free side, of any length but zero.
+        direction : numbers, shape (3,)
+            Direction of `along`; what it has along `normal` is left out. The places `across` are along `normal` ×
+            `direction`.
+        along : numbers, shape (n,) [m]
+            Places of the columns of points, from `at`; they increase.
+        heights : list of numbers, shape (n,) [m]
+            Heights: of each place across, a row of those along.
+        across : numbers, shape (n,) [m], optional
+            Places of the rows; default one row, which is the same everywhere across.
+        """
+        return made(Surface2, "surface2s.height_field", locals())
 
 
 class sliding(Kinds):
@@ -4910,6 +5035,18 @@ class quantities(Kinds):
             Name of the load.
         """
         return made(Quantity, "quantities.contact_friction", locals())
+
+    @staticmethod
+    @checked
+    def slip_power(*, load: str) -> Quantity:
+        """Power that the friction of a contact takes [W]; never negative.
+
+        Parameters
+        ----------
+        load : text
+            Name of the load.
+        """
+        return made(Quantity, "quantities.slip_power", locals())
 
     @staticmethod
     @checked

@@ -127,8 +127,9 @@ pub(crate) struct Job {
     pub no_lowering: bool,
     /// Reports the estimated error of every function and of its gradient.
     ///
-    /// The error of the discretisation in time, by a second simulation with steps of half the size; and that of bases of
-    /// flexible bodies, by one with all nodes and more functions of beams.
+    /// The error of the discretisation in time, by a second simulation with steps of half the size; that of bases of
+    /// flexible bodies, by one with all nodes and more functions of beams; and what the smoothing of contacts, stops, cables,
+    /// friction and drag changes, by one with half the widths.
     #[arg(long)]
     pub error: bool,
     /// Writes the fields of structures to fields.vtu, for ParaView and meshio.

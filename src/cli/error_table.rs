@@ -1,6 +1,7 @@
 //! Estimated errors of functions and gradients, as a table and in JSON.
 
-use crate::driver::{bases, error};
+use crate::driver::compared::Compared;
+use crate::driver::error;
 use crate::problem::Problem;
 use crate::report::summary::is_rounding;
 use serde_json::{Value, json};
@@ -65,14 +66,26 @@ fn relative(error: f64, value: f64) -> String {
 }
 
 /// The table of the errors of bases; empty if there are none.
-pub(crate) fn of_bases(problem: &Problem, found: &[bases::BasisError]) -> String {
+pub(crate) fn of_bases(problem: &Problem, found: &[Compared]) -> String {
+    let heading = "errors of bases, against all nodes and more functions of beams";
+    compared(problem, found, [heading, "finer", "error"])
+}
+
+/// The table of the changes by half of the widths of loads; empty if there are none.
+pub(crate) fn of_smoothing(problem: &Problem, found: &[Compared]) -> String {
+    let heading = "changes by the smoothing of loads, with half the widths of stops, contacts, cables, friction and drag";
+    compared(problem, found, [heading, "sharper", "change"])
+}
+
+/// The table of functions beside those of another run.
+fn compared(problem: &Problem, found: &[Compared], [heading, other, error]: [&str; 3]) -> String {
     if found.is_empty() {
         return String::new();
     }
     let width = width(problem.function_names.iter());
     let mut text = format!(
-        "errors of bases, against all nodes and more functions of beams\n{:width$}  {:>16}  {:>16}  {:>9}  {:>9}\n",
-        "function", "value", "finer", "error", "relative"
+        "{heading}\n{:width$}  {:>16}  {other:>16}  {error:>9}  {:>9}\n",
+        "function", "value", "relative"
     );
     let mut line = |name: &str, value: f64, other: f64| {
         let error = (value - other).abs();

@@ -47,7 +47,7 @@ pub(super) fn as_json(
     let (run, counts) = (&simulation.at.run, simulation.at.run.counts);
     let names = &problem.function_names;
     let mut functions = Map::new();
-    let mut bases = None;
+    let (mut bases, mut sharper) = (None, None);
     let unknown = with_errors
         .then(|| unfollowed(problem, &simulation.at))
         .flatten();
@@ -72,6 +72,15 @@ pub(super) fn as_json(
                 own["error_known"] = json!(false);
             }
         }
+        let found = driver::smoothing::changes(problem, &simulation.at, &all);
+        sharper = found.as_ref().err().map(of_sharper);
+        for found in found.into_iter().flatten() {
+            let own = &mut functions[&names[found.function]];
+            own["smoothing_change"] = json!(found.error());
+            if let Some([value, other]) = found.maximum {
+                own["true_maximum"]["smoothing_change"] = json!((value - other).abs());
+            }
+        }
         let found = driver::bases::errors(problem, &simulation.at, &all);
         bases = found.as_ref().err().map(of_finer);
         for found in found.into_iter().flatten() {
@@ -84,7 +93,7 @@ pub(super) fn as_json(
     }
     let mut warnings: Vec<String> = simulation.warning.iter().cloned().collect();
     warnings.extend(simulation.at.doubts(problem, 0..names.len()));
-    warnings.extend(unknown.into_iter().chain(bases));
+    warnings.extend(unknown.into_iter().chain(bases).chain(sharper));
     let first = &simulation.observations[0];
     let conserved = simulation.at.scene.model.conserves_energy();
     let (position, velocity) = simulation.constraint_drift();
@@ -282,7 +291,7 @@ pub(super) fn errors(problem: &Problem, at: &Simulated) -> Result<String, Failur
     }
 }
 
-/// The same of a motion, with the errors of bases.
+/// The same of a motion, with the errors of bases and the changes by the smoothing of loads.
 pub(super) fn errors_of_motion(
     problem: &Problem,
     simulation: &Simulation,
@@ -290,7 +299,8 @@ pub(super) fn errors_of_motion(
     let at = &simulation.at;
     let found = error::estimate(problem, at, &all(problem), true);
     let text = table(problem, &found.map_err(Failure::numerical)?);
-    Ok(text + &of_bases(problem, at) + &warned(problem, at))
+    let sharper = of_smoothing(problem, at);
+    Ok(text + &of_bases(problem, at) + &sharper + &warned(problem, at))
 }
 
 /// A table of the errors of bases, if there are any.
@@ -299,6 +309,21 @@ fn of_bases(problem: &Problem, at: &Evaluated) -> String {
         Ok(found) => error_table::of_bases(problem, &found),
         Err(failure) => format!("not known: {}\n", of_finer(&failure)),
     }
+}
+
+/// A table of the changes by the smoothing of loads, if there are any.
+fn of_smoothing(problem: &Problem, at: &Evaluated) -> String {
+    match driver::smoothing::changes(problem, at, &all(problem)) {
+        Ok(found) => error_table::of_smoothing(problem, &found),
+        Err(failure) => format!("not known: {}\n", of_sharper(&failure)),
+    }
+}
+
+/// Why the changes by the smoothing of loads are not known.
+fn of_sharper(failure: &IntegrationFailure) -> String {
+    format!(
+        "changes by the smoothing of loads are not known: the run with half the widths fails: {failure}"
+    )
 }
 
 /// Why the errors of bases are not known.

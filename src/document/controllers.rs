@@ -4,7 +4,7 @@ use super::drives::Following;
 use super::joints::Ends;
 use super::magnitudes::{EffortInTime, Motion};
 use super::mechanics::Point;
-use crate::quantity::Quantity;
+use crate::quantity::{Quantity, nothing};
 use schemars::JsonSchema;
 use serde::Deserialize;
 
@@ -133,11 +133,6 @@ pub struct Curve {
     /// Speed W of the motor at which it has no torque.
     #[schemars(extend("unit" = "rad/s", "exclusiveMinimum" = 0))]
     pub no_load_speed: Quantity,
-}
-
-/// The quantity 0.
-fn nothing() -> Quantity {
-    Quantity::fixed(0.0)
 }
 
 /// The quantity 1.

@@ -1,7 +1,7 @@
 //! Drives in a file.
 
 use super::magnitudes::Interpolation;
-use crate::quantity::Quantity;
+use crate::quantity::{Quantity, nothing};
 use schemars::JsonSchema;
 use serde::Deserialize;
 
@@ -151,9 +151,4 @@ pub enum TimeFunction<'a> {
     Table(&'a [f64], &'a [Quantity], Option<Interpolation>),
     /// From, to, start, speed and acceleration.
     SCurve([&'a Quantity; 5]),
-}
-
-/// The quantity 0.
-fn nothing() -> Quantity {
-    Quantity::fixed(0.0)
 }

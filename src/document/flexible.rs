@@ -1,6 +1,6 @@
 //! Bodies with elastic coordinates as they are written in a file.
 
-use crate::quantity::Quantity;
+use crate::quantity::{Quantity, nothing};
 use indexmap::IndexMap;
 use schemars::JsonSchema;
 use serde::Deserialize;
@@ -95,10 +95,6 @@ pub struct GivenSection {
     #[serde(default = "nothing")]
     #[schemars(extend("unit" = "kg m", "minimum" = 0))]
     pub inertia_z: Quantity,
-}
-
-fn nothing() -> Quantity {
-    Quantity::fixed(0.0)
 }
 
 /// An isotropic material.

@@ -90,6 +90,8 @@ pub enum Instant {
     ContactForce(OfStop),
     /// Size of the friction of a contact \[N\].
     ContactFriction(OfStop),
+    /// Power that the friction of a contact takes \[W\]; never negative.
+    SlipPower(OfStop),
     /// How deep a stop or contact is entered [m or rad]; negative before it, to the nearer limit.
     Penetration(OfStop),
     /// Force \[N\] or torque [N m] of a controller; positive where it increases its coordinate.

@@ -2,6 +2,7 @@
 
 pub mod cases;
 pub mod combined;
+pub mod contacts;
 pub mod controllers;
 pub mod couplings;
 pub mod drives;

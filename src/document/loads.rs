@@ -1,5 +1,6 @@
 //! Loads in a file.
 
+use super::contacts::{Contact, linear};
 use super::controllers::Controller;
 use super::drives::Sliding;
 use super::joints::Ends;
@@ -7,7 +8,7 @@ pub use super::magnitudes::{
     ForceInTime, Interpolation, LineForceInTime, Motion, PressureInTime, TimeFunction, TorqueInTime,
 };
 use super::mechanics::Point;
-use crate::quantity::{Quantity, Vector};
+use crate::quantity::{Quantity, Vector, nothing};
 use schemars::JsonSchema;
 use serde::Deserialize;
 
@@ -98,11 +99,6 @@ pub enum Axes {
     Ground,
     /// Axes of the loaded body.
     Body,
-}
-
-/// The quantity 0.
-fn nothing() -> Quantity {
-    Quantity::fixed(0.0)
 }
 
 /// A spring with a damper between points of two bodies.
@@ -204,6 +200,35 @@ pub struct Bushing {
     pub stiffness: BushingStiffness,
     /// C, default zero.
     pub damping: Option<BushingDamping>,
+    /// Friction of a bearing or guide by the force of the bushing across e3, default none.
+    pub friction: Option<BearingFriction>,
+}
+
+/// Friction of a bearing or guide: μ ρ N tanh(ω / w) against the rate ω of the turn about e3 or of the slide along it, with N =
+/// √(f² + n²) − n by the force f of the bushing across e3.
+#[derive(Clone, Debug, Deserialize, JsonSchema)]
+#[serde(deny_unknown_fields)]
+pub struct BearingFriction {
+    /// The motion with friction: `turn` (default) or `slide`.
+    #[serde(default = "turn")]
+    pub motion: Motion,
+    /// Coefficient of friction μ.
+    #[schemars(extend("unit" = "1", "minimum" = 0))]
+    pub coefficient: Quantity,
+    /// Radius ρ of the bearing; not of a guide that slides.
+    #[schemars(extend("unit" = "m", "exclusiveMinimum" = 0))]
+    pub radius: Option<Quantity>,
+    /// Rate w, at which 76 % of the friction acts.
+    #[schemars(extend("unit" = "rad/s or m/s", "exclusiveMinimum" = 0))]
+    pub width: Quantity,
+    /// Force n, well above which N is the force across; it makes N smooth where the force vanishes.
+    #[schemars(extend("unit" = "N", "exclusiveMinimum" = 0))]
+    pub load_width: Quantity,
+}
+
+/// A turn.
+fn turn() -> Motion {
+    Motion::Turn
 }
 
 /// Stiffness of a bushing.
@@ -281,9 +306,20 @@ pub struct Drag {
     pub body: String,
     /// Where it acts, by name or in body axes; default the centre of mass.
     pub point: Option<Point>,
-    /// Half the density times the drag coefficient times the area: force by the square of the speed.
-    #[schemars(extend("unit" = "N s²/m²", "minimum" = 0))]
+    /// Name of the set of shells on which it acts, of a body of elements. The coefficients are then those of an area.
+    pub faces: Option<String>,
+    /// Half the density times the drag coefficient times the area: force against the velocity by the square of the speed; for shells
+    /// without the area.
+    #[schemars(extend("unit" = "N s²/m² or N s²/m⁴", "minimum" = 0))]
     pub coefficient: Quantity,
+    /// The same of the force along the normal of a plate or wing at the angle α, by the square of the speed times sin α, default 0. Its
+    /// part across the velocity is lift.
+    #[serde(default = "nothing")]
+    #[schemars(extend("unit" = "N s²/m² or N s²/m⁴", "minimum" = 0))]
+    pub normal_coefficient: Quantity,
+    /// Normal of the plate, in ground axes at the start and fixed in the body. Shells have theirs.
+    #[schemars(extend("unit" = "1"))]
+    pub normal: Option<Vector>,
     /// Speed w below which the drag goes smoothly to zero, default 0.001 m/s. Above it the drag is off by ½ w²/u².
     #[serde(default = "slow")]
     #[schemars(extend("unit" = "m/s", "exclusiveMinimum" = 0))]
@@ -333,112 +369,6 @@ pub struct Stop {
         "design_variable" = "the exponent says which law the numbers of a stop have"
     ))]
     pub exponent: f64,
-}
-
-/// The exponent 1.
-fn linear() -> f64 {
-    1.0
-}
-
-/// A contact of a sphere or point of the first body with a surface of the second: the normal force of a stop, and friction
-/// μ N v_t / √(v_t² + w²) against the tangential velocity v_t.
-#[derive(Clone, Debug, Deserialize, JsonSchema)]
-#[serde(deny_unknown_fields)]
-pub struct Contact {
-    /// The body with the sphere or point, and the body with the surface, which may be "ground".
-    pub between: [String; 2],
-    /// Centre of the sphere on the first; on the second a point of the plane, or the centre of its surface.
-    pub at: Ends,
-    /// Radius of the sphere, default 0: a point.
-    #[serde(default = "nothing")]
-    #[schemars(extend("unit" = "m", "minimum" = 0))]
-    pub radius: Quantity,
-    /// Of a wheel on a plane: the circle of the centres, about `at`, of the spheres that are its tyre.
-    pub wheel: Option<Wheel>,
-    /// Surface of the second body.
-    pub surface: Surface,
-    /// Stiffness k: force per penetration, to the power of the exponent if there is one.
-    #[schemars(extend("unit" = "N/m", "exclusiveMinimum" = 0))]
-    pub stiffness: Quantity,
-    /// Dissipation c: at small speeds v of impact the rebound has 1 − c v of it; default 0.
-    #[serde(default = "nothing")]
-    #[schemars(extend("unit" = "s/m", "minimum" = 0))]
-    pub dissipation: Quantity,
-    /// Width w of the onset, from w/2 before touching to w/2 behind it. A smaller width is sharper and needs finer steps.
-    #[schemars(extend("unit" = "m", "exclusiveMinimum" = 0))]
-    pub width: Quantity,
-    /// Exponent n of the penetration, default 1. Two spheres have 1.5 by Hertz.
-    #[serde(default = "linear")]
-    #[schemars(extend(
-        "unit" = "1",
-        "minimum" = 1,
-        "design_variable" = "the exponent says which law the numbers of a contact have"
-    ))]
-    pub exponent: f64,
-    /// Friction, default none.
-    pub friction: Option<ContactFriction>,
-}
-
-/// A wheel: a torus.
-#[derive(Clone, Debug, Deserialize, JsonSchema)]
-#[serde(deny_unknown_fields)]
-pub struct Wheel {
-    /// Its axis, of any length but zero, in ground axes at the start and fixed in the body.
-    #[schemars(extend("unit" = "1"))]
-    pub axis: Vector,
-    /// Radius of the circle; that of the whole wheel is larger by the `radius` of the contact.
-    #[schemars(extend("unit" = "m", "exclusiveMinimum" = 0))]
-    pub radius: Quantity,
-}
-
-/// Friction of a contact.
-#[derive(Clone, Debug, Deserialize, JsonSchema)]
-#[serde(deny_unknown_fields)]
-pub struct ContactFriction {
-    /// Coefficient of friction μ.
-    #[schemars(extend("unit" = "1", "minimum" = 0))]
-    pub coefficient: Quantity,
-    /// Tangential velocity w at which 71 % of it acts. Below it the contact creeps instead of sticking. A smaller width is
-    /// sharper and needs finer steps.
-    #[schemars(extend("unit" = "m/s", "exclusiveMinimum" = 0))]
-    pub width: Quantity,
-}
-
-/// Surface of a contact. Directions are in ground axes at the start and fixed in the body.
-#[derive(Clone, Debug, Deserialize, JsonSchema)]
-#[serde(rename_all = "snake_case", deny_unknown_fields)]
-pub enum Surface {
-    /// A plane.
-    Plane {
-        /// Normal to the free side, of any length but zero.
-        #[schemars(extend("unit" = "1"))]
-        normal: Vector,
-    },
-    /// A sphere.
-    Sphere {
-        /// Its radius; 0 is a point.
-        #[schemars(extend("unit" = "m", "minimum" = 0))]
-        radius: Quantity,
-    },
-    /// A cylinder with round ends.
-    Capsule {
-        /// From its centre to the centre of the sphere at one end.
-        #[schemars(extend("unit" = "m"))]
-        half: Vector,
-        /// Its radius.
-        #[schemars(extend("unit" = "m", "exclusiveMinimum" = 0))]
-        radius: Quantity,
-    },
-    /// A box along the axes of its body, those of ground if it is ground's.
-    Box {
-        /// Its edges.
-        #[schemars(extend("unit" = "m", "exclusiveMinimum" = 0))]
-        size: [Quantity; 3],
-        /// Radius of its edges, default 0: sharp ones. It is within `size`.
-        #[serde(default = "nothing")]
-        #[schemars(extend("unit" = "m", "minimum" = 0))]
-        radius: Quantity,
-    },
 }
 
 /// A cable that runs straight from point to point over pulleys without friction and radius. Its tension is the normal force of

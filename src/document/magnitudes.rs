@@ -1,6 +1,6 @@
 //! Magnitudes in time and motions of joints, of loads and controllers in a file.
 
-use crate::quantity::Quantity;
+use crate::quantity::{Quantity, nothing};
 use flexbody_mechanics::model;
 use schemars::JsonSchema;
 use serde::Deserialize;
@@ -120,9 +120,4 @@ pub enum Motion {
     Turn,
     /// Displacement along its axis.
     Slide,
-}
-
-/// The quantity 0.
-fn nothing() -> Quantity {
-    Quantity::fixed(0.0)
 }

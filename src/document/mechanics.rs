@@ -4,7 +4,7 @@ use super::elements::Elements;
 use super::flexible::Beam;
 use super::modal::Modal;
 use crate::length_unit::LengthUnit;
-use crate::quantity::{Degrees, Quantity, Vector};
+use crate::quantity::{Degrees, Quantity, Vector, nothing};
 use flexbody_mathematics::math::{Mat3, Vec3};
 use indexmap::IndexMap;
 use schemars::JsonSchema;
@@ -159,11 +159,6 @@ pub enum Shape {
     },
     /// A mass without extent and rotation. Ball joints and rods act at its position.
     Point,
-}
-
-/// The quantity 0.
-fn nothing() -> Quantity {
-    Quantity::fixed(0.0)
 }
 
 /// Entries of the symmetric inertia matrix about the centre of mass in body axes. The entry xy is

@@ -48,10 +48,24 @@ impl Quantity {
         }
     }
 
+    /// The number times a factor, also as a function of its design variable.
+    pub fn times(&self, factor: f64) -> Self {
+        Self {
+            value: self.value * factor,
+            factor: self.factor * factor,
+            ..*self
+        }
+    }
+
     /// The form from which a bound [`Quantity`] is deserialised.
     pub fn bound(variable: usize, value: f64) -> serde_json::Value {
         serde_json::json!({ VARIABLE: variable, VALUE: value })
     }
+}
+
+/// The quantity 0: a default.
+pub fn nothing() -> Quantity {
+    Quantity::fixed(0.0)
 }
 
 /// Components of a vector at the design `x`.

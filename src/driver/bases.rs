@@ -5,30 +5,11 @@
 //! smaller amplitudes, and rigid shells get a basis: cheaper, but of a poor basis they tell the order of
 //! magnitude at best.
 
+pub use super::compared::run;
+use super::compared::{Compared, compare};
 use super::evaluate::Evaluated;
-use super::integration::Integration;
 use crate::integrate::IntegrationFailure;
 use crate::problem::Problem;
-
-/// A function with another basis.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub struct BasisError {
-    /// The function, by index.
-    pub function: usize,
-    /// Its value.
-    pub value: f64,
-    /// Its value with the other basis.
-    pub other: f64,
-    /// The largest value over the motion with both, if it is an aggregate.
-    pub maximum: Option<[f64; 2]>,
-}
-
-impl BasisError {
-    /// The error, absolute, if the other basis is exact.
-    pub fn error(&self) -> f64 {
-        (self.value - self.other).abs()
-    }
-}
 
 /// Functions of a simulated design with all nodes and more functions of beams. Empty if no body has a basis.
 ///
@@ -38,7 +19,7 @@ pub fn errors(
     problem: &Problem,
     at: &Evaluated,
     which: &[usize],
-) -> Result<Vec<BasisError>, IntegrationFailure> {
+) -> Result<Vec<Compared>, IntegrationFailure> {
     match problem.with_finer_bodies(&at.x) {
         Some(other) => compare(at, &other, which),
         None => Ok(Vec::new()),
@@ -53,40 +34,9 @@ pub fn changes(
     problem: &Problem,
     at: &Evaluated,
     which: &[usize],
-) -> Result<Vec<BasisError>, IntegrationFailure> {
+) -> Result<Vec<Compared>, IntegrationFailure> {
     match problem.with_richer_bases(&at.x) {
         Some(other) => compare(at, &other, which),
         None => Ok(Vec::new()),
     }
-}
-
-/// Functions of a simulated design, and those of another problem at the same design.
-fn compare(
-    at: &Evaluated,
-    other: &Problem,
-    which: &[usize],
-) -> Result<Vec<BasisError>, IntegrationFailure> {
-    let other = run(other, &at.x, which)?;
-    let one = |&function: &usize| {
-        let [own, other] = [at, &other].map(|of| of.function(function));
-        let maxima = own.maximum.zip(other.maximum);
-        BasisError {
-            function,
-            value: own.value,
-            other: other.value,
-            maximum: maxima.map(|(own, other)| [own.value, other.value]),
-        }
-    };
-    Ok(which.iter().map(one).collect())
-}
-
-/// A problem at a design, simulated for the functions `which`.
-///
-/// # Errors
-/// If the simulation fails.
-pub fn run(problem: &Problem, x: &[f64], which: &[usize]) -> Result<Evaluated, IntegrationFailure> {
-    let scene = problem.scene(x);
-    let mut integration = Integration::new(problem, &scene, Some(which), false);
-    let (at, _) = Evaluated::with(&mut integration, problem, x)?;
-    Ok(at)
 }

@@ -291,7 +291,10 @@ fn size_of_instant(at: &Evaluated, instant: &Instant<f64>) -> f64 {
             | (LoadPart::NormalForce, LoadKind::DistanceStop { law, .. }) => law.stiffness * length,
             (LoadPart::NormalForce, LoadKind::Contact(own)) => own.law.stiffness * length,
             (LoadPart::Friction, LoadKind::Contact(own)) => {
-                own.friction * own.law.stiffness * length
+                own.friction.coefficient * own.law.stiffness * length
+            }
+            (LoadPart::SlipPower, LoadKind::Contact(own)) => {
+                own.friction.coefficient * own.law.stiffness * length * length / time
             }
             (LoadPart::NormalTorque, LoadKind::JointStop { law, .. }) => law.stiffness,
             _ => length,

@@ -8,7 +8,7 @@ use super::memory;
 use super::placement::Assembly;
 use super::pointer::join;
 use crate::math::{Dual, Vec3};
-use crate::model::{Joint as ModelJoint, JointKind, Load, LoadKind, Model, RigidBody};
+use crate::model::{Joint as ModelJoint, JointKind, Load, LoadKind, Model, RigidBody, Shape};
 use crate::schema::couplings::Coupling;
 use crate::schema::joints::Joint;
 use crate::system::failure::AssemblyFailure;
@@ -72,7 +72,7 @@ fn lies(model: &Model<f64>, pointer: &str) -> bool {
     let is = |load: &&Load<f64>| pointer == join(&join("/loads", &load.name), "contact");
     let load = model.loads.iter().find(is);
     load.is_some_and(|load| match &load.kind {
-        LoadKind::Contact(own) => own.wheel.is_some(),
+        LoadKind::Contact(own) => matches!(own.shape, Shape::Wheel { .. }),
         _ => false,
     })
 }

@@ -14,6 +14,7 @@ mod check;
 mod combined;
 mod composed;
 mod composing;
+mod contacts;
 mod controllers;
 mod couplings;
 mod courses;
@@ -65,6 +66,7 @@ mod read;
 mod reduced;
 mod scene;
 mod section;
+mod smoothing;
 mod source;
 mod spread_loads;
 mod start_rates;
@@ -590,6 +592,16 @@ impl Problem {
             let nodes = reduced::keep_all_nodes(document);
             beam::enrich(document) || nodes
         })
+    }
+
+    /// The problem with half the widths over which its loads are smooth. `None` if it has no such loads, or parts of the scene are left
+    /// out for some functions.
+    pub fn with_half_widths(&self) -> Option<Self> {
+        if self.focus.is_some() {
+            return None;
+        }
+        let mut written = self.written.clone();
+        smoothing::halve(&mut written).then(|| read::remade(self, written))
     }
 
     /// The problem with bases that `change` has changed, made at the design `x`.

@@ -1,5 +1,6 @@
 //! Makes the loads of a model from those of a file.
 
+use super::contacts::contact as contact_of;
 use super::controllers::controller;
 use super::courses::course as motion;
 use super::elements::prepared;
@@ -9,17 +10,18 @@ use super::placement::Assembly;
 use super::spread_loads::dead_shares;
 use crate::math::scalar::unit;
 use crate::math::{Scalar, Vec3};
+use crate::model::load::{BearingFriction, Plate};
 use crate::model::{
-    Axes, Cable, CablePoint, Contact, DegreeOfFreedom, DistributedLoad, ForceTable, Load, LoadKind,
-    NormalLaw, Spread, Surface, TimeFunction, Wheel,
+    Air, Axes, Cable, CablePoint, DegreeOfFreedom, DistributedLoad, ForceTable, Load, LoadKind,
+    NormalLaw, Spread, TimeFunction,
 };
 use crate::prepared::Prepared;
 use crate::quantity::{Quantity, Vector};
 use crate::schema::Document;
 use crate::schema::loads::{
     Axes as WrittenAxes, BushingEntries, Cable as WrittenCable, CableLength,
-    CablePoint as WrittenPoint, Contact as WrittenContact, ForceTable as WrittenTable,
-    Interpolation, Load as WrittenLoad, Stop, Surface as WrittenSurface, TimeFunction as Written,
+    CablePoint as WrittenPoint, ForceTable as WrittenTable, Interpolation, Load as WrittenLoad,
+    Motion, Stop, TimeFunction as Written,
 };
 use std::sync::Arc;
 
@@ -139,6 +141,16 @@ fn kind<S: Scalar>(
                     Some(damping) => matrix(&damping.entries()),
                     None => vec![S::zero(); 36],
                 },
+                friction: bushing.friction.as_ref().map(|own| BearingFriction {
+                    dof: match own.motion {
+                        Motion::Turn => DegreeOfFreedom::Rotation,
+                        Motion::Slide => DegreeOfFreedom::Translation,
+                    },
+                    coefficient: get(&own.coefficient),
+                    radius: own.radius.as_ref().map_or(S::one(), get),
+                    width: get(&own.width),
+                    load_width: get(&own.load_width),
+                }),
             }
         }
         WrittenLoad::Friction(friction) => {
@@ -151,6 +163,22 @@ fn kind<S: Scalar>(
                 width: get(&friction.width),
             }
         }
+        WrittenLoad::Drag(drag) if drag.faces.is_some() => {
+            let sets = &elements(document, &drag.body).sets.face_sets;
+            let shells = drag.faces.as_ref().and_then(|faces| sets.get(faces));
+            LoadKind::Distributed(DistributedLoad {
+                body: body(&drag.body),
+                spread: Spread::Air {
+                    shells: shells.into_iter().flatten().copied().collect(),
+                    air: Air {
+                        coefficient: get(&drag.coefficient),
+                        normal_coefficient: get(&drag.normal_coefficient),
+                        width: get(&drag.width),
+                    },
+                },
+                magnitude: TimeFunction::constant(S::one()),
+            })
+        }
         WrittenLoad::Drag(drag) => LoadKind::Drag {
             body: body(&drag.body),
             point: drag.point.as_ref().map_or(Vec3::zeros(), |point| {
@@ -158,6 +186,13 @@ fn kind<S: Scalar>(
             }),
             coefficient: get(&drag.coefficient),
             width: get(&drag.width),
+            plate: drag.normal.as_ref().map(|normal| Plate {
+                normal: {
+                    let turn = assembly.pose(&drag.body).rotation;
+                    unit(turn.tr_mul(&assembly.ground(normal)))
+                },
+                coefficient: get(&drag.normal_coefficient),
+            }),
         },
         WrittenLoad::Stop(stop) => stop_of(document, assembly, stop),
         WrittenLoad::Contact(contact) => LoadKind::Contact(contact_of(assembly, contact)),
@@ -223,57 +258,6 @@ fn stop_of<S: Scalar>(document: &Document, assembly: &Assembly<S>, stop: &Stop) 
             }
         }
         (None, ..) => unreachable!("what a stop stops is checked when a problem is read"),
-    }
-}
-
-fn contact_of<S: Scalar>(assembly: &Assembly<S>, contact: &WrittenContact) -> Contact<S> {
-    let get = |quantity: &Quantity| assembly.quantity(quantity);
-    let ends = ends(assembly, &contact.between, &contact.at);
-    let [of_a, turn] = contact
-        .between
-        .each_ref()
-        .map(|own| assembly.pose(own).rotation);
-    let in_body = |direction: &Vector| turn.tr_mul(&assembly.ground(direction));
-    let friction = contact.friction.as_ref();
-    Contact {
-        body_a: ends.body_a,
-        body_b: ends.body_b,
-        point_a: ends.point_a,
-        radius: get(&contact.radius),
-        wheel: contact.wheel.as_ref().map(|own| Wheel {
-            axis: unit(of_a.tr_mul(&assembly.ground(&own.axis))),
-            radius: get(&own.radius),
-        }),
-        point_b: ends.point_b,
-        surface: match &contact.surface {
-            WrittenSurface::Plane { normal } => Surface::Plane {
-                normal: unit(in_body(normal)),
-            },
-            WrittenSurface::Sphere { radius } => Surface::Sphere {
-                radius: get(radius),
-            },
-            WrittenSurface::Capsule { half, radius } => Surface::Capsule {
-                half: in_body(half),
-                radius: get(radius),
-            },
-            WrittenSurface::Box { size, radius } => {
-                let radius = get(radius);
-                let half = |i: usize| Vec3::ith(i, get(&size[i]) * 0.5 - radius);
-                Surface::Box {
-                    halves: [0, 1, 2].map(half),
-                    radius,
-                }
-            }
-        },
-        law: NormalLaw {
-            exponent: contact.exponent,
-            stiffness: get(&contact.stiffness),
-            dissipation: get(&contact.dissipation),
-            width: get(&contact.width),
-        },
-        friction: friction.map_or(S::zero(), |own| get(&own.coefficient)),
-        // Without friction any width will do.
-        slip: friction.map_or(S::one(), |own| get(&own.width)),
     }
 }
 

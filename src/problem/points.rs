@@ -356,11 +356,13 @@ pub(super) fn beside(problem: &Problem) -> Option<Finding> {
                 Load::Spring(spring) => ends(&pointer, &spring.between, &spring.at),
                 Load::Contact(own) => ends(&pointer, &own.between, &own.at).or_else(|| {
                     let sides = own.between.iter();
+                    let is_long = own.half.is_some();
                     let body = sides
-                        .zip([own.radius.value > 0.0, true])
+                        .zip([own.radius.value > 0.0 || is_long, true])
                         .find(|(body, _)| is_point(body));
                     let (body, extends) = body?;
-                    (own.friction.is_some() && extends).then(|| {
+                    let turns = own.friction.is_some() || (is_long && *body == own.between[0]);
+                    (turns && extends).then(|| {
                         turned(
                             join(&pointer, "between"),
                             body,

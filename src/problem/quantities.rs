@@ -257,6 +257,7 @@ impl<S: Scalar> FunctionBuilder<'_, S> {
                 false => self.of_load(&of.load, LoadPart::NormalForce),
             },
             I::ContactFriction(of) => self.of_load(&of.load, LoadPart::Friction),
+            I::SlipPower(of) => self.of_load(&of.load, LoadPart::SlipPower),
             I::Penetration(of) => match self.stops_angle(&of.load) {
                 true => self.of_load(&of.load, LoadPart::PenetrationAngle),
                 false => self.of_load(&of.load, LoadPart::Penetration),

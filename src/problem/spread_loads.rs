@@ -39,7 +39,7 @@ fn area_shares(mesh: &ElementMesh, shells: &[usize]) -> BTreeMap<usize, f64> {
 }
 
 /// Forces of unit magnitude on the unknowns of a body, of each load that is spread over it: in all directions of a load whose
-/// direction is fixed, as the body may turn, and of a pressure along the normals of the undeformed shells. Loads with faults
+/// direction is fixed, as the body may turn, and of a pressure or drag along the normals of the undeformed shells. Loads with faults
 /// have none.
 pub(super) fn unit_forces(
     document: &Document,
@@ -64,6 +64,7 @@ pub(super) fn unit_forces(
             Load::Area(own) => &own.body,
             Load::Edge(own) => &own.body,
             Load::Line(own) => &own.body,
+            Load::Drag(own) if own.faces.is_some() => &own.body,
             _ => continue,
         };
         let of_body = document.bodies.get(body);
@@ -71,8 +72,13 @@ pub(super) fn unit_forces(
         if !of_body.is_some_and(|of_body| std::ptr::eq(&**of_body, elements)) {
             continue;
         }
-        if let Load::Pressure(load) = load {
-            if let Some(shells) = own.sets.face_sets.get(&load.faces) {
+        let normal = match load {
+            Load::Pressure(load) => Some(&load.faces),
+            Load::Drag(load) => load.faces.as_ref(),
+            _ => None,
+        };
+        if let Some(faces) = normal {
+            if let Some(shells) = own.sets.face_sets.get(faces) {
                 all.push(force(&mut normal_shares(&own.mesh, shells).into_iter()));
             }
             continue;

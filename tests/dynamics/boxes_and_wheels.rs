@@ -3,7 +3,9 @@
 
 use super::couplings::{close, turned};
 use super::stops::rebound;
-use crate::reference::documents::{problem as parsed, reversed, unlowered_values, values, vary};
+use crate::reference::documents::{
+    methods, problem as parsed, reversed, unlowered_values, values, vary,
+};
 use crate::reference::gradients::gradients_are_exact;
 use flexbody_problem::Problem;
 use serde_json::Value;
@@ -221,14 +223,7 @@ fn a_leaning_wheel_steers_itself() {
 
 #[test]
 fn gradients_by_every_method() {
-    let methods = [
-        json!({"duration": 0.4, "tolerance": 1e-7}),
-        json!({"duration": 0.4, "steps": 300, "method": "dop853"}),
-        json!({"duration": 0.4, "tolerance": 1e-6, "method": {"radau": {"stages": 3}}}),
-        json!({"duration": 0.4, "steps": 200, "method": {"bdf": {"order": 2}}}),
-        json!({"duration": 0.4, "steps": 200, "method": {"generalised_alpha": {"radius": 0.8}}}),
-    ];
-    for simulation in methods {
+    for simulation in methods(0.4, 300) {
         let mut file = free(simulation.clone());
         let own = "/loads/hit/contact";
         vary(

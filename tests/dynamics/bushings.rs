@@ -1,7 +1,7 @@
 //! Bushings against closed forms: coupled stiffness at rest, vibrations, energy and momentum, derivatives by every method,
 //! families, rotation on spherical and universal joints; torsion springs with a cubic term.
 
-use crate::reference::documents::{problem as parsed, reversed, values, vary};
+use crate::reference::documents::{methods, problem as parsed, reversed, values, vary};
 use crate::reference::gradients::gradients_are_exact;
 use serde_json::Value;
 use std::f64::consts::TAU;
@@ -115,14 +115,7 @@ fn energy_and_momentum_are_kept() {
 
 #[test]
 fn gradients_by_every_method() {
-    let methods = [
-        json!({"duration": 0.7, "tolerance": 1e-8}),
-        json!({"duration": 0.7, "tolerance": 1e-6, "method": {"radau": {"stages": 3}}}),
-        json!({"duration": 0.7, "steps": 60, "method": {"radau": {"stages": 2}}}),
-        json!({"duration": 0.7, "steps": 100, "method": {"bdf": {"order": 2}}}),
-        json!({"duration": 0.7, "steps": 100, "method": {"generalised_alpha": {"radius": 0.8}}}),
-    ];
-    for simulation in methods {
+    for simulation in methods(0.7, 100) {
         let mut document = pair(simulation.clone(), true);
         let paths = [
             "/loads/mount/bushing/stiffness/rows/0/0",

@@ -2,7 +2,7 @@
 //! energy and power, derivatives by every method, families.
 
 use crate::reference::documents::{
-    problem as parsed, reversed, run, unlowered_values, value, values, vary,
+    in_units, methods, problem as parsed, reversed, run, unlowered_values, value, values, vary,
 };
 use crate::reference::gradients::gradients_are_exact;
 use crate::stops::rebound;
@@ -166,13 +166,7 @@ fn crane(simulation: &Value) -> Value {
 
 #[test]
 fn gradients_by_every_method() {
-    let methods = [
-        json!({"duration": 0.6, "tolerance": 1e-7}),
-        json!({"duration": 0.6, "tolerance": 1e-6, "method": {"radau": {"stages": 3}}}),
-        json!({"duration": 0.6, "steps": 200, "method": {"bdf": {"order": 2}}}),
-        json!({"duration": 0.6, "steps": 200, "method": {"generalised_alpha": {"radius": 0.8}}}),
-    ];
-    for simulation in methods {
+    for simulation in methods(0.6, 200) {
         let mut document = crane(&simulation);
         let mut paths: Vec<String> = ["stiffness", "dissipation", "width"]
             .iter()
@@ -241,6 +235,45 @@ fn the_same_in_other_descriptions() {
     let direction = [0.6 * c - 0.1 * s, 0.8, 0.6 * s + 0.1 * c];
     turned["functions"]["load"]["final"]["position"]["direction"] = json!(direction);
     agree(&values(&turned), "turned");
+    // Millimetres and tonnes; feet and pounds.
+    for units in [(1e3, 1e-3), (1.0 / 0.3048, 1.0 / 0.45359237)] {
+        let mut file = document.clone();
+        file["gravity"] = json!([0, -9.81, 0]);
+        let reference = values(&file);
+        let mut places = vec![
+            ("/gravity", 1, 0),
+            ("/bodies/boom/shape", 1, 0),
+            ("/bodies/boom/mass", 0, 1),
+            ("/bodies/boom/points", 1, 0),
+            ("/bodies/load/shape", 1, 0),
+            ("/bodies/load/mass", 0, 1),
+            ("/bodies/load/points", 1, 0),
+            ("/bodies/load/place/at", 1, 0),
+            ("/loads/hoist/cable/length/table/values", 1, 0),
+            ("/loads/stay/cable/length", 1, 0),
+        ];
+        for load in ["hoist", "stay"] {
+            let path = |key: &str| &*format!("/loads/{load}/cable/{key}").leak();
+            places.extend([
+                (path("points"), 1, 0),
+                (path("stiffness"), 0, 1),
+                (path("dissipation"), -1, 0),
+                (path("width"), 1, 0),
+            ]);
+        }
+        let found = values(&in_units(&file, units, &places));
+        let (metre, kilogram) = units;
+        let newton = kilogram * metre;
+        let scales = [metre, newton, metre, newton * metre, newton * metre];
+        for ((found, scale), exact) in found.iter().zip(scales).zip(&reference) {
+            near(
+                found / scale,
+                *exact,
+                1e-6 * exact.abs().max(0.1),
+                "in other units",
+            );
+        }
+    }
 }
 
 /// A cable that is taut for a thousandth of the time is not missed: a ball flies past the end of its rope.

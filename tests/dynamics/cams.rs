@@ -1,9 +1,11 @@
 //! Cams: followers against drives with the same course, beads on curves with their energy and vibrations, starts, phases,
 //! derivatives by every method, and the same in other descriptions.
 
-use super::couplings::{close, methods, turned};
+use super::couplings::{close, turned};
 use super::phases::{simulated, whole};
-use crate::reference::documents::{problem as parsed, reversed, unlowered_values, values, vary};
+use crate::reference::documents::{
+    methods, problem as parsed, reversed, unlowered_values, values, vary,
+};
 use crate::reference::gradients::{gradients_are_exact, gradients_of_expressions_are_exact};
 use serde_json::Value;
 use std::f64::consts::TAU;
@@ -132,7 +134,7 @@ fn beads_rest_and_vibrate_in_the_valley() {
 
 #[test]
 fn gradients_by_every_method() {
-    for simulation in methods() {
+    for simulation in methods(0.8, 120) {
         let mut file = bead(simulation.clone());
         let values = "/couplings/wire/cam/profile/values";
         vary(

@@ -2,7 +2,7 @@
 //! and random drops of which none is lost.
 
 use super::stops::rebound;
-use crate::reference::documents::{problem as parsed, values, vary};
+use crate::reference::documents::{methods, problem as parsed, values, vary};
 use crate::reference::gradients::gradients_are_exact;
 use crate::reference::models::Numbers;
 use flexbody_driver::simulate;
@@ -224,14 +224,7 @@ fn tumbling(simulation: Value) -> Value {
 
 #[test]
 fn gradients_by_every_method() {
-    let methods = [
-        json!({"duration": 0.5, "tolerance": 1e-7}),
-        json!({"duration": 0.5, "steps": 300, "method": "dop853"}),
-        json!({"duration": 0.5, "tolerance": 1e-6, "method": {"radau": {"stages": 3}}}),
-        json!({"duration": 0.5, "steps": 200, "method": {"bdf": {"order": 2}}}),
-        json!({"duration": 0.5, "steps": 200, "method": {"generalised_alpha": {"radius": 0.8}}}),
-    ];
-    for simulation in methods {
+    for simulation in methods(0.5, 300) {
         let mut document = tumbling(simulation.clone());
         let paths = [
             "/loads/a/contact/stiffness",

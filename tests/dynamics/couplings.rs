@@ -2,7 +2,7 @@
 //! screws, belts; a hundred turns, derivatives by every method, families, rest and vibrations, starts, redundancy.
 
 use crate::reference::documents::{
-    problem as parsed, reversed, run, unlowered_values, value, values, vary,
+    methods, problem as parsed, reversed, run, unlowered_values, value, values, vary,
 };
 use crate::reference::gradients::gradients_are_exact;
 use flexbody_driver::simulate;
@@ -401,21 +401,9 @@ fn machine(simulation: Value) -> Value {
     })
 }
 
-/// Every method, with chosen and given steps.
-pub fn methods() -> [Value; 6] {
-    [
-        json!({"duration": 0.8, "tolerance": 1e-8}),
-        json!({"duration": 0.8, "steps": 60, "method": "dop853"}),
-        json!({"duration": 0.8, "tolerance": 1e-6, "method": {"radau": {"stages": 3}}}),
-        json!({"duration": 0.8, "steps": 80, "method": {"radau": {"stages": 2}}}),
-        json!({"duration": 0.8, "steps": 120, "method": {"bdf": {"order": 3}}}),
-        json!({"duration": 0.8, "steps": 120, "method": {"generalised_alpha": {"radius": 0.8}}}),
-    ]
-}
-
 #[test]
 fn gradients_by_every_method() {
-    for simulation in methods() {
+    for simulation in methods(0.8, 120) {
         let mut document = machine(simulation.clone());
         let paths = [
             "/couplings/bevel/bevel/at/0",

@@ -5,7 +5,7 @@ use crate::reference;
 use flexbody_mathematics::math::{Complex64, Parameters, Scalar, Vec3};
 use flexbody_mechanics::integrate::{Method, Settings, simulate};
 use flexbody_mechanics::model::{
-    Axes, DistributedLoad, Form, Load, LoadKind, Model, Spread, TimeFunction,
+    Air, Axes, DistributedLoad, Form, Load, LoadKind, Model, Spread, TimeFunction,
 };
 use flexbody_mechanics::structures::loads::edge_shares;
 use flexbody_mechanics::structures::shell::ShellKind;
@@ -32,7 +32,12 @@ fn case(name: &str, mut model: Model<f64>) -> Case {
 }
 
 fn forces<S: Scalar>(case: &Case, model: &Model<S>, q: &[S], time: S) -> Vec<S> {
-    let motions = case.motions(q, &case.v.iter().map(|&v| S::from(v)).collect::<Vec<_>>());
+    let v: Vec<S> = case.v.iter().map(|&v| S::from(v)).collect();
+    moving_forces(case, model, [q, &v], time)
+}
+
+fn moving_forces<S: Scalar>(case: &Case, model: &Model<S>, [q, v]: [&[S]; 2], time: S) -> Vec<S> {
+    let motions = case.motions(q, v);
     let mut out = vec![S::zero(); case.v.len()];
     let here = InMotion::new(model, &case.numbering, &motions, time);
     loads::add_forces(&here, &mut out);
@@ -80,6 +85,14 @@ fn pull_backs() {
             .map(|&j| power(&model, &case.moved(&unit(nv, j)), time))
             .collect();
         case.assert("by positions", &given, &exact);
+        let exact = places.iter().map(|&j| {
+            let mut v = lift(&case.v);
+            v[j] += Complex64::new(0.0, flexbody_mathematics::math::scalar::COMPLEX_STEP);
+            dot(&slopes(&moving_forces(&case, &model, [&q, &v], time)), &psi)
+        });
+        let given: Vec<f64> = places.iter().map(|&i| v[i]).collect();
+        assert!(given.iter().any(|x| x.abs() > 1e-3), "the air slows it");
+        case.assert("by velocities", &given, &exact.collect::<Vec<f64>>());
         let later = Complex64::new(TIME, flexbody_mathematics::math::scalar::COMPLEX_STEP);
         case.assert("by time", &[by_time], &[power(&model, &q, later)]);
         let exact = case.by_parameters(|model| power(model, &q, time));
@@ -218,6 +231,73 @@ fn a_pressure_on_a_flat_plate_is_its_area() {
     assert!((local - exact).norm() < 1e-13 * exact.norm(), "{local}");
     let exact = Vec3::new(0.5, 0.125, 0.0).cross(&exact);
     assert!((torque - exact).norm() < 1e-13 * exact.norm(), "{torque}");
+}
+
+/// A flat plate of area A that moves at the angle α to its plane has the force −u² A (c u/|u| + c_n sin α n): at the middle, and a
+/// plate that turns about its middle line is slowed by ∫ (c + c_n) |ω x|³ over it.
+#[test]
+fn the_air_on_a_flat_plate() {
+    let (c, c_n, area) = (0.3, 1.7, 0.25);
+    let own = aluminium_plate([6, 4], 0.01);
+    let shells = own.mesh.elements.len();
+    let mut frame = Numbers(3).body("plate");
+    (frame.mass, frame.inertia) = own.rigid();
+    let mut model = alone(frame);
+    let still = vec![0.0; own.mesh.coordinates];
+    model.add_flexible(0, (&still, &still), Form::Finite(own));
+    model.loads.push(Load {
+        name: "air".into(),
+        kind: LoadKind::Distributed(DistributedLoad {
+            body: 0,
+            spread: Spread::Air {
+                shells: (0..shells).collect(),
+                air: Air {
+                    coefficient: c,
+                    normal_coefficient: c_n,
+                    width: 1e-6,
+                },
+            },
+            magnitude: TimeFunction::constant(1.0),
+        }),
+    });
+    let (q, v) = placement::guess(&model);
+    let case = Case {
+        name: "plate".into(),
+        numbering: Numbering::new(&model),
+        model,
+        q,
+        v,
+        numbers: Numbers(1),
+    };
+    let start = case.numbering.velocity(0);
+    let turn = case.motions(&case.q, &case.v)[0].rotation;
+    let found = |case: &Case, linear: Vec3<f64>, omega: Vec3<f64>| {
+        let mut v = vec![0.0; case.v.len()];
+        for k in 0..3 {
+            (v[start + k], v[start + 3 + k]) = (linear[k], omega[k]);
+        }
+        let found = moving_forces(case, &case.model, [&case.q, &v], TIME);
+        bodies::velocities_of(&found[start..])
+    };
+    for angle in [0.0_f64, 0.3, 1.2, std::f64::consts::FRAC_PI_2] {
+        let along = Vec3::new(angle.cos(), 0.0, angle.sin());
+        let (force, torque) = found(&case, turn * along * 3.0, Vec3::zeros());
+        let exact = -(along * c + Vec3::z() * (c_n * angle.sin())) * (9.0 * area);
+        let local = turn.tr_mul(&force);
+        assert!(
+            (local - exact).norm() < 1e-11 * exact.norm(),
+            "{angle} {local} {exact}"
+        );
+        let moment = Vec3::new(0.5, 0.125, 0.0).cross(&exact);
+        assert!(
+            (torque - moment).norm() < 1e-11 * moment.norm(),
+            "{angle} {torque}"
+        );
+    }
+    // About the line x = 0 through the edge: u = ω x, over 1 × 0.25 m: the torque ∫ (c + c_n) ω² x³ dA.
+    let (_, torque) = found(&case, Vec3::zeros(), Vec3::new(0.0, 2.0, 0.0));
+    let exact = (c + c_n) * 4.0 * area / 4.0;
+    assert!((torque.y + exact).abs() < 1e-4 * exact, "{torque} {exact}");
 }
 
 /// A dead load along an edge has the force m L n, in ground axes or those of the body, whatever the deformation.

@@ -1,6 +1,8 @@
 //! Springs and dampers by tables: motions in closed form, energy, equality with numbers, derivatives by every method, families.
 
-use crate::reference::documents::{problem as parsed, reversed, unlowered_values, values, vary};
+use crate::reference::documents::{
+    in_units, methods, problem as parsed, reversed, unlowered_values, values, vary,
+};
 use crate::reference::gradients::gradients_are_exact;
 use serde_json::Value;
 use std::f64::consts::PI;
@@ -150,13 +152,7 @@ fn machine(simulation: &Value, interpolation: &str) -> Value {
 
 #[test]
 fn gradients_by_every_method() {
-    let methods = [
-        json!({"duration": 0.6, "tolerance": 1e-7}),
-        json!({"duration": 0.6, "tolerance": 1e-6, "method": {"radau": {"stages": 3}}}),
-        json!({"duration": 0.6, "steps": 150, "method": {"bdf": {"order": 2}}}),
-        json!({"duration": 0.6, "steps": 150, "method": {"generalised_alpha": {"radius": 0.8}}}),
-    ];
-    for (k, simulation) in methods.into_iter().enumerate() {
+    for (k, simulation) in methods(0.6, 150).into_iter().enumerate() {
         let mut document = machine(&simulation, INTERPOLATIONS[k % 3]);
         let mut paths = Vec::new();
         for (load, kind, keys) in [
@@ -210,4 +206,41 @@ fn the_same_in_other_descriptions() {
     turned["functions"]["tip"]["final"]["position"]["direction"] = json!([0.6 * c, 0.8, 0.6 * s]);
     turned["functions"]["rate"]["final"]["velocity"]["direction"] = json!([c, 0, s]);
     agree(&values(&turned), "turned");
+    // Millimetres and tonnes; feet and pounds.
+    let places = [
+        ("/gravity", 1, 0),
+        ("/bodies/slider/shape", 1, 0),
+        ("/bodies/slider/mass", 0, 1),
+        ("/bodies/slider/velocity", 1, 0),
+        ("/bodies/arm/shape", 1, 0),
+        ("/bodies/arm/mass", 0, 1),
+        ("/bodies/arm/points", 1, 0),
+        ("/loads/spring/spring/at", 1, 0),
+        ("/loads/spring/spring/rest_length", 1, 0),
+        ("/loads/spring/spring/table/places", 1, 0),
+        ("/loads/spring/spring/table/forces", 1, 1),
+        ("/loads/spring/spring/damping_table/places", 1, 0),
+        ("/loads/spring/spring/damping_table/forces", 1, 1),
+        ("/loads/torsion/torsion_spring/stiffness", 2, 1),
+        ("/loads/torsion/torsion_spring/table/forces", 2, 1),
+        ("/loads/torsion/torsion_spring/damping_table/forces", 2, 1),
+        ("/loads/damper/damping/table/places", 1, 0),
+        ("/loads/damper/damping/table/forces", 1, 1),
+    ];
+    let mut file = document.clone();
+    file["gravity"] = json!([0, -9.81, 0]);
+    let reference = values(&file);
+    for (metre, kilogram) in [(1e3, 1e-3), (1.0 / 0.3048, 1.0 / 0.45359237)] {
+        let found = values(&in_units(&file, (metre, kilogram), &places));
+        let joule = kilogram * metre * metre;
+        let scales = [metre, metre, kilogram * metre, joule, joule, joule];
+        for ((found, scale), exact) in found.iter().zip(scales).zip(&reference) {
+            near(
+                found / scale,
+                *exact,
+                1e-7 * exact.abs().max(0.1),
+                "in other units",
+            );
+        }
+    }
 }

@@ -15,9 +15,11 @@ use flexbody_mechanics::model::Interpolation;
 use flexbody_mechanics::model::controller::{
     Controller, Coordinate, Feedback, Limits, Regime, Weight,
 };
+use flexbody_mechanics::model::load::{BearingFriction, Plate};
 use flexbody_mechanics::model::{
-    Axes, Cable, CablePoint, Contact, DegreeOfFreedom, ForceTable, JointKind, Load, LoadKind,
-    Model, NormalLaw, Smoothness, Surface, TimeFunction, Wheel,
+    Axes, Cable, CablePoint, Contact, DegreeOfFreedom, ForceTable, Friction, HeightField,
+    JointKind, Load, LoadKind, Model, NormalLaw, Shape, Smoothness, Stribeck, Surface,
+    TimeFunction,
 };
 use flexbody_mechanics::system::InMotion;
 use flexbody_mechanics::system::initial;
@@ -27,6 +29,7 @@ use flexbody_mechanics::system::{Numbering, bodies};
 use nalgebra::DMatrix;
 use reference::cases::{Case, case, dot, lift, parameters, slopes, step, unit};
 use reference::models::Numbers;
+use std::sync::Arc;
 
 /// An instant within the second interval of the tables.
 const TIME: f64 = 0.37;
@@ -169,14 +172,22 @@ fn kinds(body_b: Option<usize>, numbers: &mut Numbers) -> Vec<(JointKind, LoadKi
     };
     all.push((Spherical, ball));
     for width in [0.7, 3.0] {
-        let drag = LoadKind::Drag {
-            body: 1,
-            point: numbers.vector(),
-            coefficient: 0.8,
-            width,
-        };
-        all.push((Spherical, drag));
+        for coefficient in [0.0, 1.7] {
+            let normal = numbers.vector().normalize();
+            let drag = LoadKind::Drag {
+                body: 1,
+                point: numbers.vector(),
+                coefficient: 0.8,
+                width,
+                plate: (coefficient > 0.0).then_some(Plate {
+                    normal,
+                    coefficient,
+                }),
+            };
+            all.push((Spherical, drag));
+        }
     }
+    all.extend(bushings(numbers));
     all.extend(stops(body_b, numbers));
     all.extend(cables(body_b, numbers));
     all.extend(contacts(body_b, numbers));
@@ -243,15 +254,47 @@ fn controllers(body_b: Option<usize>, numbers: &mut Numbers) -> Vec<(JointKind, 
     all
 }
 
-/// Contacts with every surface: deep and within the onset, sliding and nearly sticking, of spheres and points.
+/// Bushings with friction of their bearing or guide, and without.
+fn bushings(numbers: &mut Numbers) -> Vec<(JointKind, LoadKind<f64>)> {
+    let mut matrix = |scale: f64| {
+        let list = numbers.list(36);
+        let symmetric = |k: usize| 0.5 * scale * (list[k] + list[6 * (k % 6) + k / 6]);
+        (0..36).map(symmetric).collect::<Vec<f64>>()
+    };
+    let frictions = [
+        None,
+        Some((DegreeOfFreedom::Rotation, 0.2, 0.5)),
+        Some((DegreeOfFreedom::Translation, 1.0, 3.0)),
+    ];
+    let one = |own: Option<(DegreeOfFreedom, f64, f64)>| {
+        let friction = own.map(|(dof, radius, width)| BearingFriction {
+            dof,
+            coefficient: 0.3,
+            radius,
+            width,
+            load_width: 0.4,
+        });
+        let kind = LoadKind::Bushing {
+            joint: 0,
+            stiffness: matrix(2.0),
+            damping: matrix(0.3),
+            friction,
+        };
+        (JointKind::Spherical, kind)
+    };
+    frictions.into_iter().map(one).collect()
+}
+
+/// Contacts with every surface: deep and within the onset, sliding and nearly sticking, of spheres, points, wheels and capsules.
 fn contacts(body_b: Option<usize>, numbers: &mut Numbers) -> Vec<(JointKind, LoadKind<f64>)> {
     let half = numbers.vector();
     let mut all = Vec::new();
-    for (exponent, width, friction, slip) in [
-        (1.0, 0.3, 0.4, 0.02),
-        (1.5, 0.3, 0.7, 30.0),
-        (1.5, 40.0, 0.5, 0.5),
-        (1.0, 0.3, 0.0, 1.0),
+    let falling = |coefficient: f64, speed: f64| Some(Stribeck { coefficient, speed });
+    for (exponent, width, friction, slip, stribeck) in [
+        (1.0, 0.3, 0.4, 0.02, None),
+        (1.5, 0.3, 0.7, 30.0, falling(1.1, 4.0)),
+        (1.5, 40.0, 0.5, 0.5, falling(0.8, 1.5)),
+        (1.0, 0.3, 0.0, 1.0, None),
     ] {
         for (radius, surface) in [
             (
@@ -280,13 +323,14 @@ fn contacts(body_b: Option<usize>, numbers: &mut Numbers) -> Vec<(JointKind, Loa
             (6.0, boxed(numbers, [20.0, 0.1, 30.0], 5.0)),
             (3.0, boxed(numbers, [20.0, 30.0, 25.0], 2.0)),
             (0.0, boxed(numbers, [20.0, 30.0, 25.0], 0.0)),
+            (20.0, hills(numbers)),
         ] {
             let contact = Contact {
                 body_a: 1,
                 body_b,
                 point_a: numbers.vector(),
                 radius,
-                wheel: None,
+                shape: Shape::Sphere,
                 point_b: numbers.vector(),
                 surface,
                 law: NormalLaw {
@@ -295,24 +339,63 @@ fn contacts(body_b: Option<usize>, numbers: &mut Numbers) -> Vec<(JointKind, Loa
                     dissipation: 0.1,
                     width,
                 },
-                friction,
-                slip,
+                friction: Friction {
+                    coefficient: friction,
+                    width: slip,
+                    stribeck: stribeck.clone(),
+                },
             };
-            if matches!(contact.surface, Surface::Plane { .. }) {
-                let wheel = Some(Wheel {
-                    axis: numbers.vector().normalize(),
-                    radius: 0.7,
-                });
+            let mut with = |shape: Shape<f64>| {
                 let own = Contact {
-                    wheel,
+                    shape,
                     ..contact.clone()
                 };
                 all.push((JointKind::Spherical, LoadKind::Contact(own)));
+            };
+            match contact.surface {
+                Surface::Plane { .. } => {
+                    with(Shape::Wheel {
+                        axis: numbers.vector().normalize(),
+                        radius: 0.7,
+                    });
+                    with(Shape::Capsule {
+                        half: numbers.vector() * 3.0,
+                    });
+                }
+                Surface::Field { .. } => {}
+                // Nearest at an end, and between. One without radius has no sides.
+                _ if contact.radius > 0.0 => {
+                    for long in [0.01, 1.0] {
+                        with(Shape::Capsule {
+                            half: numbers.vector() * long,
+                        });
+                    }
+                }
+                _ => {}
             }
             all.push((JointKind::Spherical, LoadKind::Contact(contact)));
         }
     }
     all
+}
+
+/// Gentle heights, obliquely on their body.
+fn hills(numbers: &mut Numbers) -> Surface<f64> {
+    let first = numbers.vector().normalize();
+    let second = first.cross(&numbers.vector()).normalize();
+    let along: Vec<f64> = (-4..=4).map(|k| 10.0 * f64::from(k)).collect();
+    let across = vec![-30.0, -5.0, 10.0, 40.0];
+    let row = |v: &f64| {
+        along
+            .iter()
+            .map(|u| 2.0 * (u / 20.0 + v / 30.0).sin())
+            .collect()
+    };
+    let heights: Vec<Vec<f64>> = across.iter().map(row).collect();
+    Surface::Field {
+        axes: [first, second, first.cross(&second)],
+        heights: Arc::new(HeightField::new(along, across, &heights)),
+    }
 }
 
 /// A box with these half edges, obliquely on its body.

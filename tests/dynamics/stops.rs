@@ -2,7 +2,7 @@
 //! derivatives, and contacts that come and go between steps.
 
 use crate::reference::documents::{
-    problem as parsed, reversed, run, unlowered_values, value, values, vary,
+    methods, problem as parsed, reversed, run, unlowered_values, value, values, vary,
 };
 use crate::reference::gradients::gradients_are_exact;
 use flexbody_driver::simulate;
@@ -231,15 +231,7 @@ fn machine(simulation: Value) -> Value {
 /// By every method, in all numbers of the stops; all of them are met.
 #[test]
 fn gradients_by_every_method() {
-    let methods = [
-        json!({"duration": 0.6, "tolerance": 1e-7}),
-        json!({"duration": 0.6, "steps": 300, "method": "dop853"}),
-        json!({"duration": 0.6, "tolerance": 1e-6, "method": {"radau": {"stages": 3}}}),
-        json!({"duration": 0.6, "steps": 150, "method": {"radau": {"stages": 2}}}),
-        json!({"duration": 0.6, "steps": 300, "method": {"bdf": {"order": 2}}}),
-        json!({"duration": 0.6, "steps": 300, "method": {"generalised_alpha": {"radius": 0.8}}}),
-    ];
-    for simulation in methods {
+    for simulation in methods(0.6, 300) {
         let mut document = machine(simulation.clone());
         let of = |load: &str, keys: &[&str]| -> Vec<String> {
             let path = |key: &&str| format!("/loads/{load}/stop/{key}");

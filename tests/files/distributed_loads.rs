@@ -127,6 +127,8 @@ fn swing(turn: Mat3<f64>, (metre, kilogram): (f64, f64), basis: &str) -> Value {
                               "magnitude": 10.0 * kilogram}},
             "snow": {"area": {"body": "plate", "faces": "all", "direction": turned([0.0, 0.2, -1.0], 1.0),
                               "magnitude": 50.0 * pascal}},
+            "air": {"drag": {"body": "plate", "faces": "all", "coefficient": 3.0 * kilogram / metre.powi(3),
+                             "normal_coefficient": 8.0 * kilogram / metre.powi(3), "width": 0.1 * metre}},
         },
         "simulation": {"duration": 0.2, "steps": 40, "method": {"radau": {"stages": 3}}},
         "functions": {
@@ -182,12 +184,12 @@ fn works_are_the_gain_of_energy() {
             "start": {"value": {"at": 0, "of": {"energy": "total"}}},
             "end": {"final": {"energy": "total"}},
         });
-        for load in ["wind", "lift", "rope", "snow"] {
+        for load in ["wind", "lift", "rope", "snow", "air"] {
             functions[load] = json!({"integral": {"power": {"load": load}}});
         }
         document["functions"] = functions;
         let [start, end, works @ ..] = &values(&document)[..] else {
-            panic!("six values");
+            panic!("seven values");
         };
         let (work, size) = works
             .iter()
@@ -231,12 +233,17 @@ fn derivatives_are_exact() {
                                   "pressure": {"harmonic": {"amplitude": 2000, "frequency": 20}}}},
             "rope": {"edge": {"body": "first", "edges": "y0", "direction": [1, 0.5, -1], "magnitude": 300}},
             "lift": {"area": {"body": "second", "faces": "all", "direction": [0.2, 0.3, 1], "axes": "body", "magnitude": 800}},
+            "air": {"drag": {"body": "first", "faces": "all", "coefficient": 300, "normal_coefficient": 900, "width": 0.5}},
         });
+        document["functions"]["drag"] = json!({"integral": {"power": {"load": "air"}}});
         document["variables"] = json!({
             "value": {"path": "/loads/wind/pressure/pressure/table/values/1", "lower": 1000, "upper": 5000},
             "amplitude": {"path": "/loads/gust/pressure/pressure/harmonic/amplitude", "lower": 1000, "upper": 5000},
             "frequency": {"path": "/loads/gust/pressure/pressure/harmonic/frequency", "lower": 10, "upper": 30},
             "rope": {"path": "/loads/rope/edge/magnitude", "lower": 100, "upper": 500},
+            "drag": {"path": "/loads/air/drag/coefficient", "lower": 100, "upper": 500},
+            "normal": {"path": "/loads/air/drag/normal_coefficient", "lower": 100, "upper": 2000},
+            "width": {"path": "/loads/air/drag/width", "lower": 0.1, "upper": 2},
             "direction": {"path": "/loads/lift/area/direction/0", "lower": 0.1, "upper": 0.5},
             "thickness": {"path": "/bodies/second/elements/structure/thickness/value", "lower": 0.01, "upper": 0.1},
             "duration": {"path": "/simulation/duration", "lower": 0.01, "upper": 0.03},

@@ -95,6 +95,38 @@ pub fn unlowered_values(file: &Value) -> Vec<f64> {
     (0..count).map(|f| motion.at.function(f).value).collect()
 }
 
+/// Settings of simulations by every kind of method, explicit and implicit, with steps that follow a tolerance and with equal ones.
+pub fn methods(duration: f64, steps: u32) -> [Value; 6] {
+    let equal = |method: Value| json!({"duration": duration, "steps": steps, "method": method});
+    [
+        json!({"duration": duration, "tolerance": 1e-7}),
+        json!({"duration": duration, "tolerance": 1e-6, "method": {"radau": {"stages": 3}}}),
+        equal(json!("dop853")),
+        equal(json!({"radau": {"stages": 2}})),
+        equal(json!({"bdf": {"order": 2}})),
+        equal(json!({"generalised_alpha": {"radius": 0.8}})),
+    ]
+}
+
+/// The file in other units: what a metre and a kilogram are, with the powers of both of the numbers at some places, also in lists.
+pub fn in_units(file: &Value, (metre, kilogram): (f64, f64), places: &[(&str, i32, i32)]) -> Value {
+    fn times(value: &mut Value, factor: f64) {
+        match value {
+            Value::Number(x) => *value = json!(x.as_f64().expect("a number") * factor),
+            Value::Array(all) => all.iter_mut().for_each(|own| times(own, factor)),
+            Value::Object(all) => all.values_mut().for_each(|own| times(own, factor)),
+            _ => {}
+        }
+    }
+    let mut other = file.clone();
+    for (place, m, kg) in places {
+        let own = other.pointer_mut(place);
+        let own = own.unwrap_or_else(|| panic!("nothing at {place}"));
+        times(own, metre.powi(*m) * kilogram.powi(*kg));
+    }
+    other
+}
+
 /// The file with the entries of these sections in the opposite order.
 pub fn reversed(file: &Value, sections: &[&str]) -> Value {
     let mut other = file.clone();

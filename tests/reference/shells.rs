@@ -7,7 +7,7 @@ use flexbody_mathematics::math::{Mat3, Vec3};
 use flexbody_mechanics::integrate::Trajectory;
 use flexbody_mechanics::model::finite::FiniteElements;
 use flexbody_mechanics::model::{
-    Axes, DistributedLoad, Form, Interpolation, JointKind, Load, LoadKind, Model, Smoothness,
+    Air, Axes, DistributedLoad, Form, Interpolation, JointKind, Load, LoadKind, Model, Smoothness,
     Spread, TimeFunction,
 };
 use flexbody_mechanics::structures::beam::{Beam, Section, SectionValues};
@@ -277,7 +277,16 @@ pub fn press(model: &mut Model<f64>) {
     let pressure = Spread::Pressure {
         shells: (0..mesh.elements.len()).collect(),
     };
+    let air = Spread::Air {
+        shells: (0..mesh.elements.len()).step_by(2).collect(),
+        air: Air {
+            coefficient: 0.4,
+            normal_coefficient: 1.3,
+            width: 0.6,
+        },
+    };
     let all = [
+        (air, TimeFunction::constant(1.0)),
         (pressure, harmonic),
         (dead(2, Axes::Ground, Vec3::new(0.3, -0.7, 0.5)), table),
         (

@@ -303,6 +303,7 @@ impl<S: Scalar> Instant<S> {
                 | LoadPart::Friction
                 | LoadPart::EffortForce => "N",
                 LoadPart::Torque | LoadPart::NormalTorque | LoadPart::EffortTorque => "N m",
+                LoadPart::SlipPower => "W",
             },
             Instant::Rotation(_) => "rad",
         }
@@ -368,6 +369,7 @@ impl<S: Scalar> Instant<S> {
                 LoadPart::NormalForce => "contact force",
                 LoadPart::NormalTorque => "contact torque",
                 LoadPart::Friction => "friction",
+                LoadPart::SlipPower => "slip power",
                 LoadPart::EffortForce | LoadPart::EffortTorque => "effort",
                 LoadPart::ErrorLength | LoadPart::ErrorAngle => "tracking error",
             },

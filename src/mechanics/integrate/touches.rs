@@ -7,8 +7,8 @@
 //! q(s) = Σ_e [ H_e0(s) q_e + h H_e1(s) q̇_e + h² H_e2(s) q̈_e ],   e the start and the end, 0 ≤ s ≤ 1
 //! ```
 //!
-//! It errs by h⁶/46080 times the sixth derivative: by 2e-5 of the length of what turns by 2 rad in the step. A step that begins and
-//! ends apart and touches between is repeated, and then ends where it is deepest.
+//! It errs by h⁶/46080 times the sixth derivative: by 2e-5 of the length of what turns by 2 rad in the step. A step that begins
+//! apart, ends so or grazes, and touches more between is repeated, and then ends where it is deepest.
 //!
 //! The third derivative of a profile jumps at its points, and each of its values acts near one of them alone. So derivatives in
 //! the values need steps that are no longer than from one point to the next.
@@ -53,6 +53,7 @@ impl Over {
 struct End {
     bodies: Vec<[[f64; 7]; 3]>,
     time: f64,
+    /// Of all loads; none if the scene has many contacts.
     gaps: Vec<Gap>,
 }
 
@@ -146,26 +147,50 @@ impl Touches {
     ) -> Option<Missed> {
         self.after.set(model, numbering, end, self.before.time + h);
         let passed = self.passed(h);
-        if passed.is_some() || self.before.gaps.is_empty() {
+        let near = numbering.near();
+        if passed.is_some() || (self.before.gaps.is_empty() && near.is_none()) {
             return passed;
         }
         let mut motions: Vec<BodyMotion<S>> = Vec::new();
-        let bodies = 0..numbering.bodies();
-        motions.extend(bodies.map(|body| self.inside(body, h, 0.5)));
-        let mut middle = Vec::new();
-        let time = self.before.time + 0.5 * h;
-        gaps(model, (&motions, time), 0..model.loads.len(), &mut middle);
-        let all = self.before.gaps.iter().zip(&middle).zip(&self.after.gaps);
-        let all = all
-            .enumerate()
-            .filter_map(|(k, ((before, middle), after))| {
-                if may_meet([before, middle, after], h) {
-                    self.deepest(model, &mut motions, (k, before), h)
-                } else {
-                    None
-                }
-            });
+        let mut at = |part: f64, of: &[usize]| {
+            let bodies = 0..numbering.bodies();
+            motions.clear();
+            motions.extend(bodies.map(|body| self.inside(body, h, part)));
+            let (mut found, time) = (Vec::new(), self.before.time + part * h);
+            gaps(model, (&motions, time), of.iter().copied(), &mut found);
+            found
+        };
+        let (before, middle, after) = match near {
+            None => {
+                let all: Vec<usize> = (0..model.loads.len()).collect();
+                (
+                    self.before.gaps.clone(),
+                    at(0.5, &all),
+                    self.after.gaps.clone(),
+                )
+            }
+            Some(near) => {
+                let place = |body: usize| self.inside::<f64>(body, h, 0.5).position;
+                let reach = |body: usize| self.way(body, h);
+                let all = near.loads(place, reach);
+                (at(0.0, &all), at(0.5, &all), at(1.0, &all))
+            }
+        };
+        let all = before.iter().zip(&middle).zip(&after).enumerate();
+        let all = all.filter_map(|(k, ((now, middle), after))| {
+            if !may_meet([now, middle, after], h) {
+                return None;
+            }
+            let first = before.iter().position(|own| own.load == now.load)?;
+            self.deepest(model, &mut motions, (k - first, now, after.penetration), h)
+        });
         all.min_by(|a, b| a.part.total_cmp(&b.part))
+    }
+
+    /// A bound of the way of a body from the middle of a step to either end. What turns about the body stays within its reach.
+    fn way(&self, body: usize, h: f64) -> f64 {
+        let speed = |s: f64| self.inside::<f64>(body, h, s).velocity.norm();
+        0.5 * h * SPEEDS_UP * [0.0, 0.5, 1.0].map(speed).into_iter().fold(0.0, f64::max)
     }
 
     /// Goes on from the end of the step that was looked at last.
@@ -201,16 +226,15 @@ impl Touches {
         }
     }
 
-    /// Where gap k is deepest, if it touches there.
+    /// Where gap k of its load is deepest, if it touches there and more than at the end of the step.
     fn deepest<S: Scalar>(
         &self,
         model: &Model<S>,
         motions: &mut [BodyMotion<S>],
-        (k, gap): (usize, &Gap),
+        (k, gap, after): (usize, &Gap, f64),
         h: f64,
     ) -> Option<Missed> {
         let load = gap.load;
-        let first = self.before.gaps.iter().position(|own| own.load == load)?;
         let bodies = model.loads[load].kind.bodies(&model.joints);
         let mut found = Vec::new();
         let mut depth = |part: f64| {
@@ -219,7 +243,7 @@ impl Touches {
             }
             let time = self.before.time + part * h;
             gaps(model, (motions, time), load..load + 1, &mut found);
-            found[k - first].penetration
+            found[k].penetration
         };
         let at = |k: usize| k as f64 / INTERVALS as f64;
         let depths: Vec<f64> = (1..INTERVALS).map(|k| depth(at(k))).collect();
@@ -236,7 +260,7 @@ impl Touches {
         }
         let part = 0.5 * (low + high);
         let over = Over::Contact(load);
-        (depth(part) > gap.onset).then_some(Missed { over, part })
+        (depth(part) > gap.onset.max(after)).then_some(Missed { over, part })
     }
 }
 
@@ -262,6 +286,9 @@ impl End {
             let pddot = std::array::from_fn(|i| by_alpha[i] + by_omega[i]);
             [(r, p), (velocity, pdot), (acceleration, pddot)].map(|(x, p)| joined(&x, &p))
         }));
+        if numbering.near().is_some() {
+            return;
+        }
         let mut motions = Vec::new();
         BodyMotion::all(numbering, q, v, &mut motions);
         gaps(
@@ -284,18 +311,21 @@ const THIRDS: usize = 45;
 const HALVES: usize = 40;
 const NEAR: f64 = 1e-3;
 
+/// A penetration below this times the size of that at which a force is felt has a force that steps need not notice.
+const GRAZES: f64 = 2.0;
+
 /// The speed between two looks is at most this times the largest of the three.
 const SPEEDS_UP: f64 = 1.5;
 
-/// Whether a step that begins and ends apart may touch between: the gap is known at three places, and no place is further than a
-/// quarter of the step from one.
+/// Whether a step that begins apart and ends so, or only grazes, may touch between: the gap is known at three places, and no place is
+/// further than a quarter of the step from one.
 fn may_meet(gaps: [&Gap; 3], h: f64) -> bool {
     let largest = |of: &dyn Fn(&Gap) -> f64| gaps.iter().map(|gap| of(gap)).fold(0.0, f64::max);
     let [before, _, after] = gaps;
-    let apart = |gap: &Gap| gap.penetration < gap.onset;
+    let apart = before.penetration < before.onset && after.penetration < -GRAZES * after.onset;
     let reach = 0.25 * h * SPEEDS_UP * largest(&|gap| gap.speed);
     let near = |gap: &&Gap| gap.penetration + reach >= gap.onset;
-    apart(before) && apart(after) && gaps.iter().any(near)
+    apart && gaps.iter().any(near)
 }
 
 /// Factors of q, q̇ and q̈ at the start and at the end, in the quintic and in its rate.

@@ -7,7 +7,7 @@ use super::planar::{Plane, Turned, points, used};
 use crate::math::scalar::{along, lift3};
 use crate::math::{Scalar, Vec3};
 use crate::model::controller::Coordinate;
-use crate::model::{Axes, DegreeOfFreedom, Form, JointKind, LoadKind, Model, Surface};
+use crate::model::{Axes, DegreeOfFreedom, Form, JointKind, LoadKind, Model, Shape, Surface};
 
 /// The largest angular velocity of the bodies \[rad/s\], by value or by a `change` of the variable.
 /// Speeds count by their ratio to the body's length. The round-off of a slow body scales with it.
@@ -321,16 +321,20 @@ impl Plane {
                 }
                 LoadKind::Contact(own) => {
                     let n = turned.normal(own.body_b);
-                    if matches!(own.surface, Surface::Box { .. }) {
-                        // Whether faces are across the plane is not looked for.
+                    if matches!(own.surface, Surface::Box { .. } | Surface::Field { .. }) {
+                        // Whether faces and heights are across the plane is not looked for.
                         examiner.zero(S::one(), 1.0, what);
                     }
                     for direction in own.surface.directions() {
                         examiner.zero(n.dot(direction), largest(direction), what);
                     }
-                    if let Some(wheel) = &own.wheel {
-                        let tilt = turned.normal(Some(own.body_a)).cross(&wheel.axis);
-                        examiner.vanishes(tilt.as_slice(), 1.0, what);
+                    let n = turned.normal(Some(own.body_a));
+                    match &own.shape {
+                        Shape::Sphere => {}
+                        Shape::Wheel { axis, .. } => {
+                            examiner.vanishes(n.cross(axis).as_slice(), 1.0, what);
+                        }
+                        Shape::Capsule { half } => examiner.zero(n.dot(half), largest(half), what),
                     }
                 }
                 // Flexible bodies that carry it, and stiffnesses, have no plane but by chance, which is not looked for.
@@ -356,8 +360,16 @@ impl Plane {
                         }
                     }
                 }
+                LoadKind::Drag {
+                    body,
+                    plate: Some(own),
+                    ..
+                } => {
+                    let n = turned.normal(Some(*body));
+                    examiner.zero(n.dot(&own.normal), 1.0, what);
+                }
                 LoadKind::Spring { .. }
-                | LoadKind::Drag { .. }
+                | LoadKind::Drag { plate: None, .. }
                 | LoadKind::BallDamping { .. }
                 | LoadKind::Damping {
                     dof: DegreeOfFreedom::Translation,

@@ -251,10 +251,17 @@ fn move_load<S: Scalar>(kind: &mut LoadKind<S>, on_host: &[Option<Pose<S>>]) {
                 moved(body, point_b);
             }
         }
-        LoadKind::Drag { body, point, .. } => moved(body, point),
+        LoadKind::Drag {
+            body, point, plate, ..
+        } => {
+            if let (Some(pose), Some(own)) = (&on_host[*body], plate) {
+                own.normal = pose.turn * own.normal;
+            }
+            moved(body, point);
+        }
         LoadKind::Contact(own) => {
-            if let (Some(pose), Some(wheel)) = (&on_host[own.body_a], &mut own.wheel) {
-                wheel.axis = pose.turn * wheel.axis;
+            if let (Some(pose), Some(own)) = (&on_host[own.body_a], own.shape.direction_mut()) {
+                *own = pose.turn * *own;
             }
             moved(&mut own.body_a, &mut own.point_a);
             if let Some(body) = &mut own.body_b {

@@ -2,7 +2,7 @@
 
 use super::examine::ROUND_OFF;
 use crate::math::{Vec3, rotation};
-use crate::model::{Joint, JointKind, LoadKind, Model};
+use crate::model::{Joint, JointKind, LoadKind, Model, Shape};
 
 /// Unit vectors are parallel if the norm of their cross product is smaller.
 const PARALLEL: f64 = 1e-6;
@@ -133,14 +133,23 @@ fn vectors(model: &Model<f64>) -> (Vec<Vec3<f64>>, Vec<Vec3<f64>>) {
                 inside.push(at(*body_a, point_a) - b);
                 inside.push(turn(*body_a) * point_a);
             }
-            LoadKind::Drag { body, point, .. } => inside.push(turn(*body) * point),
+            LoadKind::Drag {
+                body, point, plate, ..
+            } => {
+                inside.push(turn(*body) * point);
+                inside.extend(plate.as_ref().map(|own| turn(*body) * own.normal));
+            }
             LoadKind::Contact(own) => {
                 let (of_a, of_b) = (turn(own.body_a), own.body_b.map(turn));
                 inside.push(of_a * own.point_a);
                 for direction in own.surface.directions() {
                     inside.push(of_b.map_or(*direction, |turn| turn * direction));
                 }
-                across.extend(own.wheel.as_ref().map(|wheel| of_a * wheel.axis));
+                match &own.shape {
+                    Shape::Sphere => {}
+                    Shape::Wheel { axis, .. } => across.push(of_a * axis),
+                    Shape::Capsule { half } => inside.push(of_a * half),
+                }
             }
             LoadKind::Force {
                 body,

@@ -10,7 +10,7 @@ use super::reactions;
 use crate::functions::{Function, Gate, Instant, Release, Rotation, Scene};
 use crate::math::{Scalar, Vec3};
 use crate::model::controller::Coordinate;
-use crate::model::{Axes, JointKind, LoadKind};
+use crate::model::{Axes, JointKind, LoadKind, Shape};
 
 /// Largest lever arm that counts as zero, relative to the characteristic length and [`ROUND_OFF`].
 /// It is small because a lever arm turns a small body fast.
@@ -101,8 +101,8 @@ pub(super) fn holds<S: Scalar>(
             }
             LoadKind::Contact(own) => {
                 // Friction turns a sphere; a point only if it is off the centre of mass.
-                let slides =
-                    own.wheel.is_none() && (own.friction.is_zero() || own.radius.is_zero());
+                let is_sphere = matches!(own.shape, Shape::Sphere);
+                let slides = is_sphere && (own.friction.is_none() || own.radius.is_zero());
                 if is(own.body_a) {
                     vanishes(slides.then_some(&own.point_a), &turns);
                 }

@@ -6,6 +6,8 @@
 //! ```text
 //! pressure     f_a = m ∫ N_a x,r × x,s dr ds                x the deformed surface: the pressure follows it
 //! dead load    f_a = m s_a n,     s_a = ∫ N_a dl or ∫ N_a dA of the undeformed body
+//! air          f_a = −m ∫ N_a g(u) (c u + c_n n (n·u)) dA,   u the velocity and n the normal of the deformed surface,
+//!              g = uᵀu / √(uᵀu + w²)
 //! ```
 //!
 //! n is fixed in ground axes or in those of the frame. Forces and their derivatives are in `system::loads`.
@@ -43,8 +45,38 @@ pub enum Spread<S> {
         /// Axes of n.
         axes: Axes,
     },
+    /// By the air at rest through which the shells move.
+    Air {
+        /// The shells.
+        shells: Arc<[usize]>,
+        /// The air.
+        air: Air<S>,
+    },
+}
+
+/// Drag and lift for each area of a surface that moves through air at rest.
+#[derive(Clone, Debug)]
+pub struct Air<S> {
+    /// c, of the force against the velocity \[N s²/m⁴\].
+    pub coefficient: S,
+    /// c_n, of that along the normal \[N s²/m⁴\].
+    pub normal_coefficient: S,
+    /// Speed w, well above which the force is quadratic \[m/s\].
+    pub width: S,
 }
 
 parameters!(struct DistributedLoad { body; spread, magnitude });
 
-parameters!(enum Spread { Pressure { shells; }, Dead { shares, axes; direction } });
+parameters!(enum Spread { Pressure { shells; }, Dead { shares, axes; direction }, Air { shells; air } });
+
+parameters!(struct Air {; coefficient, normal_coefficient, width });
+
+impl<S> Spread<S> {
+    /// Whether the load may supply energy.
+    pub fn supplies(&self) -> bool {
+        match self {
+            Self::Pressure { .. } | Self::Dead { .. } => true,
+            Self::Air { .. } => false,
+        }
+    }
+}

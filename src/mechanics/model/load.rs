@@ -135,6 +135,8 @@ pub enum LoadKind<S> {
         stiffness: Vec<S>,
         /// C likewise \[N s/m, N s, N m s\].
         damping: Vec<S>,
+        /// Friction by the force across e3.
+        friction: Option<BearingFriction<S>>,
     },
     /// Coulomb friction of constant size along or about the axis of a joint. It is smooth at rate
     /// zero.
@@ -158,6 +160,8 @@ pub enum LoadKind<S> {
         coefficient: S,
         /// Speed w, well above which the drag is quadratic \[m/s\].
         width: S,
+        /// A flat plate or wing, whose force along its normal is its lift.
+        plate: Option<Plate<S>>,
     },
     /// Stops at the ends of the way of a joint, along or about its axis.
     JointStop {
@@ -197,6 +201,34 @@ pub enum LoadKind<S> {
     Controller(Controller<S>),
 }
 
+/// A flat plate or wing in a flow.
+#[derive(Clone, Debug)]
+pub struct Plate<S> {
+    /// Its unit normal, in body axes.
+    pub normal: Vec3<S>,
+    /// c_n = ½ ρ C_n A, with the coefficient C_n sin α of the force along the normal at the angle α \[N s²/m²\].
+    pub coefficient: S,
+}
+
+/// Friction of a bearing or guide by the force across its axis: T = μ ρ N tanh(ω / w), N = √(f² + n²) − n.
+#[derive(Clone, Debug)]
+pub struct BearingFriction<S> {
+    /// The turn about e3 or the slide along it.
+    pub dof: DegreeOfFreedom,
+    /// Coefficient μ.
+    pub coefficient: S,
+    /// Radius ρ of a bearing, 1 of a guide \[m or 1\].
+    pub radius: S,
+    /// Rate w, at which tanh 1 of it acts \[rad/s or m/s\].
+    pub width: S,
+    /// Force n, well above which N is the force across \[N\].
+    pub load_width: S,
+}
+
+parameters!(struct Plate {; normal, coefficient });
+
+parameters!(struct BearingFriction { dof; coefficient, radius, width, load_width });
+
 parameters!(struct Load { name; kind });
 
 parameters!(enum LoadKind {
@@ -206,9 +238,9 @@ parameters!(enum LoadKind {
     TorsionSpring { joint, counter; rest_angle, stiffness, cubic, damping, tables },
     Damping { joint, dof; coefficient, table },
     BallDamping { joint; coefficient },
-    Bushing { joint; stiffness, damping },
+    Bushing { joint; stiffness, damping, friction },
     Friction { joint, dof; size, width },
-    Drag { body; point, coefficient, width },
+    Drag { body; point, coefficient, width, plate },
     JointStop { joint, dof, counter; limits, law },
     DistanceStop { body_a, body_b; point_a, point_b, limits, law },
     Contact(; contact),

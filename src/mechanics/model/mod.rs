@@ -16,6 +16,7 @@ pub mod element_operators;
 pub mod finite;
 pub mod flexible;
 pub mod force_table;
+pub mod height_field;
 pub mod joint;
 pub mod load;
 pub mod mobility;
@@ -31,12 +32,13 @@ pub mod time_function;
 
 pub use axes::Axes;
 pub use cable::{Cable, CablePoint};
-pub use contact::{Contact, Surface, Wheel};
+pub use contact::{Contact, Friction, Shape, Stribeck, Surface};
 pub use coupling::CoupledMotion;
-pub use distributed::{DistributedLoad, Spread};
+pub use distributed::{Air, DistributedLoad, Spread};
 pub use drive::{DegreeOfFreedom, Drive};
 pub use flexible::{FlexibleBody, Form, Inertia, Modes};
 pub use force_table::ForceTable;
+pub use height_field::HeightField;
 pub use joint::{ConstraintRow, Fit, Joint, JointFrame, JointKind};
 pub use load::{Load, LoadKind};
 pub use mobility::Mobility;
@@ -70,13 +72,16 @@ impl<S: Scalar> Model<S> {
     /// Whether loads or drives may supply energy.
     pub fn is_fed(&self) -> bool {
         let feeds = |load: &Load<S>| {
-            matches!(
+            let supplies = match &load.kind {
+                LoadKind::Cable(own) => Some(!own.is_fixed()),
+                LoadKind::Distributed(own) => Some(own.spread.supplies()),
+                _ => None,
+            };
+            let feeds = matches!(
                 load.kind,
-                LoadKind::Force { .. }
-                    | LoadKind::Torque { .. }
-                    | LoadKind::Distributed(_)
-                    | LoadKind::Controller(_)
-            ) || matches!(&load.kind, LoadKind::Cable(own) if !own.is_fixed())
+                LoadKind::Force { .. } | LoadKind::Torque { .. } | LoadKind::Controller(_)
+            );
+            supplies.unwrap_or(feeds)
         };
         let driven = self.joints.iter().any(|joint| !joint.drives.is_empty());
         driven || self.loads.iter().any(feeds)
@@ -94,21 +99,26 @@ impl<S: Scalar> Model<S> {
             LoadKind::Damping {
                 coefficient, table, ..
             } => coefficient.re() == 0.0 && table.is_none(),
-            LoadKind::BallDamping { coefficient, .. } | LoadKind::Drag { coefficient, .. } => {
-                coefficient.re() == 0.0
-            }
-            LoadKind::Bushing { damping, .. } => damping.iter().all(|x| x.re() == 0.0),
+            LoadKind::BallDamping { coefficient, .. } => coefficient.re() == 0.0,
+            LoadKind::Drag {
+                coefficient, plate, ..
+            } => coefficient.re() == 0.0 && plate.is_none(),
+            LoadKind::Bushing {
+                damping, friction, ..
+            } => damping.iter().all(|x| x.re() == 0.0) && friction.is_none(),
             LoadKind::Friction { size, .. } => size.re() == 0.0,
             LoadKind::JointStop { law, .. } | LoadKind::DistanceStop { law, .. } => {
                 law.dissipation.re() == 0.0
             }
-            LoadKind::Contact(own) => own.law.dissipation.re() == 0.0 && own.friction.re() == 0.0,
+            LoadKind::Contact(own) => {
+                let friction = &own.friction;
+                let slides = friction.coefficient.re() == 0.0 && friction.stribeck.is_none();
+                own.law.dissipation.re() == 0.0 && slides
+            }
             LoadKind::Cable(own) => own.law.dissipation.re() == 0.0,
             // They are judged as what feeds the motion.
-            LoadKind::Force { .. }
-            | LoadKind::Torque { .. }
-            | LoadKind::Distributed(_)
-            | LoadKind::Controller(_) => true,
+            LoadKind::Force { .. } | LoadKind::Torque { .. } | LoadKind::Controller(_) => true,
+            LoadKind::Distributed(own) => own.spread.supplies(),
         };
         let undamped = |body: &FlexibleBody<S>| match &body.form {
             Form::Modal(modal) => {

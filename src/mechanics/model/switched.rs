@@ -142,14 +142,22 @@ impl<S: Scalar> LoadKind<S> {
                 *coefficient = zero;
                 table.iter_mut().for_each(|own| own.forces.fill(zero));
             }
-            LoadKind::BallDamping { coefficient, .. } | LoadKind::Drag { coefficient, .. } => {
-                *coefficient = zero
+            LoadKind::BallDamping { coefficient, .. } => *coefficient = zero,
+            LoadKind::Drag {
+                coefficient, plate, ..
+            } => {
+                *coefficient = zero;
+                plate.iter_mut().for_each(|own| own.coefficient = zero);
             }
             LoadKind::Bushing {
-                stiffness, damping, ..
+                stiffness,
+                damping,
+                friction,
+                ..
             } => {
                 stiffness.fill(zero);
                 damping.fill(zero);
+                friction.iter_mut().for_each(|own| own.coefficient = zero);
             }
             LoadKind::Friction { size, .. } => *size = zero,
             LoadKind::JointStop { law, .. } | LoadKind::DistanceStop { law, .. } => {

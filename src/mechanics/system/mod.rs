@@ -31,6 +31,7 @@ pub mod loads;
 mod loop_rows;
 pub mod marker;
 pub mod measures;
+mod near;
 pub mod nearest;
 pub mod numbering;
 pub mod observe;

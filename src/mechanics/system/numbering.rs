@@ -1,10 +1,13 @@
-//! Indices of the states of bodies and of the multipliers of joints. They are fixed for a scene.
+//! Indices of the states of bodies and of the multipliers of joints, and the pairs of bodies that may touch. They are fixed for a scene.
 //!
 //! Every rigid body has seven positions and six velocities. Its mobility determines its unknowns in
 //! linear systems (see [`super::reduce`]).
 
+use super::near::Near;
+use crate::math::Scalar;
 use crate::model::{Mobility, Model};
 use std::ops::Range;
+use std::sync::Arc;
 
 /// Number of positions and of velocities of a body.
 const POSITIONS: usize = 7;
@@ -16,11 +19,12 @@ pub struct Numbering {
     mobility: Vec<Mobility>,
     unknown: Vec<usize>,
     constraint: Vec<usize>,
+    near: Option<Arc<Near>>,
 }
 
 impl Numbering {
     /// Numbers the bodies and joints of `model` in their order.
-    pub fn new<S>(model: &Model<S>) -> Self {
+    pub fn new<S: Scalar>(model: &Model<S>) -> Self {
         let offsets = |sizes: &mut dyn Iterator<Item = usize>| {
             let mut all = vec![0];
             for size in sizes {
@@ -33,7 +37,13 @@ impl Numbering {
             unknown: offsets(&mut mobility.iter().map(Mobility::unknowns)),
             mobility,
             constraint: offsets(&mut model.joints.iter().map(|joint| joint.rows().count())),
+            near: Near::new(model).map(Arc::new),
         }
+    }
+
+    /// The contacts between bodies by pairs, if there are many.
+    pub(crate) fn near(&self) -> Option<&Near> {
+        self.near.as_deref()
     }
 
     /// Number of bodies.

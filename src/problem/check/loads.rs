@@ -9,7 +9,7 @@ use crate::pointer::{advice, join};
 use crate::quantity::Quantity;
 use crate::schema::joints::Ends;
 use crate::schema::loads::{
-    Bushing, Cable, CableLength, Contact, ForceTable, Load, Motion, Stop, Surface, TimeFunction,
+    Bushing, Cable, CableLength, Drag, ForceTable, Load, Motion, Stop, TimeFunction,
 };
 use crate::schema::measured::JointReaction;
 
@@ -128,7 +128,7 @@ impl Checker<'_> {
                 self.loaded_joint(pointer, &friction.joint, &kinds);
                 self.joint_motion(pointer, &friction.joint, friction.motion);
             }
-            Load::Drag(drag) => self.moving(pointer, &drag.body, &drag.point),
+            Load::Drag(drag) => self.drag(pointer, drag),
             Load::Stop(stop) => self.stop(pointer, stop),
             Load::Contact(contact) => self.contact(pointer, contact),
             Load::Cable(cable) => self.cable(pointer, cable),
@@ -194,7 +194,53 @@ impl Checker<'_> {
     }
 
     /// Checks the joint and the symmetry of a bushing.
+    /// Checks a drag: what it acts on, and the normal of a plate.
+    fn drag(&mut self, pointer: &str, drag: &Drag) {
+        if let Some(faces) = &drag.faces {
+            self.loaded_elements(pointer, &drag.body, ("faces", faces));
+            for (key, given) in [
+                ("point", drag.point.is_some()),
+                ("normal", drag.normal.is_some()),
+            ] {
+                if given {
+                    let expected = "none, as shells have their places and normals";
+                    let found = format!("a \"{key}\"");
+                    self.fault(Finding::new(join(pointer, key), found, expected).of_key());
+                }
+            }
+            return;
+        }
+        self.moving(pointer, &drag.body, &drag.point);
+        let place = join(pointer, "normal");
+        match &drag.normal {
+            Some(normal) => self.direction(&place, normal),
+            None if drag.normal_coefficient.value != 0.0
+                || drag.normal_coefficient.variable.is_some() =>
+            {
+                let found = "a \"normal_coefficient\" without \"normal\"";
+                let finding = Finding::new(pointer, found, "the normal of the plate");
+                self.fault(finding.of_key());
+            }
+            None => {}
+        }
+    }
+
     fn bushing(&mut self, pointer: &str, bushing: &Bushing) {
+        if let Some(friction) = &bushing.friction {
+            let place = join(pointer, "friction");
+            match (friction.motion, &friction.radius) {
+                (Motion::Turn, None) => {
+                    let finding = Finding::new(place, "no \"radius\"", "the radius of the bearing");
+                    self.fault(finding.of_key());
+                }
+                (Motion::Slide, Some(_)) => {
+                    let expected = "none, as a guide that slides has no radius";
+                    let finding = Finding::new(join(&place, "radius"), "a radius", expected);
+                    self.fault(finding.of_key());
+                }
+                _ => {}
+            }
+        }
         use JointKind::{Cylindrical, Free, Planar, Prismatic, Revolute, Spherical, Universal};
         let kinds = [
             Free,
@@ -335,55 +381,6 @@ impl Checker<'_> {
                 };
                 let expected = "\"joint\", or \"between\" and \"at\"";
                 self.fault(Finding::new(pointer, found, expected).of_key());
-            }
-        }
-    }
-
-    /// Checks a contact: its bodies and its surface.
-    fn contact(&mut self, pointer: &str, contact: &Contact) {
-        let list = join(pointer, "between");
-        self.between(&list, &contact.between);
-        if contact.between[0] == GROUND && contact.between[1] != GROUND {
-            let expected =
-                "the body with the sphere or point; ground comes second, with the surface";
-            self.fault(Finding::new(join(&list, 0), "\"ground\"", expected));
-        }
-        if let Ends::Each(pair) = &contact.at {
-            self.pair(&join(pointer, "at"), &contact.between, pair);
-        }
-        let place = join(pointer, "surface");
-        match &contact.surface {
-            Surface::Plane { normal } => {
-                self.direction(&join(&join(&place, "plane"), "normal"), normal);
-            }
-            Surface::Sphere { radius } => {
-                if radius.value == 0.0 && contact.radius.value == 0.0 {
-                    let expected = "a radius of one of them, as two points do not meet";
-                    let radius = join(&join(&place, "sphere"), "radius");
-                    self.fault(Finding::new(radius, "a point against a point", expected));
-                }
-            }
-            Surface::Capsule { half, .. } => {
-                self.direction(&join(&join(&place, "capsule"), "half"), half);
-            }
-            Surface::Box { size, radius } => {
-                for (k, own) in size.iter().enumerate() {
-                    if own.value <= 2.0 * radius.value {
-                        let found = format!("{}, with a \"radius\" of {}", own.value, radius.value);
-                        let place = join(&join(&join(&place, "box"), "size"), k);
-                        let expected = "an edge longer than twice the radius";
-                        self.fault(Finding::new(place, found, expected));
-                    }
-                }
-            }
-        }
-        if let Some(wheel) = &contact.wheel {
-            let wheels = join(pointer, "wheel");
-            self.direction(&join(&wheels, "axis"), &wheel.axis);
-            if !matches!(contact.surface, Surface::Plane { .. }) {
-                let found = "a wheel on another surface than a plane";
-                let expected = "a plane; spheres and points touch all surfaces";
-                self.fault(Finding::new(wheels, found, expected).of_key());
             }
         }
     }

@@ -1,6 +1,7 @@
 //! Checks the meaning of a document: names, numbers, and faults that a schema cannot express.
 
 mod beams;
+mod contacts;
 mod controllers;
 mod couplings;
 mod elements;

@@ -280,6 +280,9 @@ impl Checker<'_> {
             Instant::ContactFriction(of) => {
                 self.stop_of(&join(pointer, "contact_friction"), &of.load, true);
             }
+            Instant::SlipPower(of) => {
+                self.stop_of(&join(pointer, "slip_power"), &of.load, true);
+            }
             Instant::Penetration(of) => {
                 self.stop_of(&join(pointer, "penetration"), &of.load, false);
             }

@@ -160,9 +160,12 @@ impl Checker<'_> {
     /// Checks a value that a quantity reaches. What does not touch has a force of exactly zero, so no instant is the one at which
     /// it becomes zero.
     pub(super) fn level(&mut self, pointer: &str, of: &Instant, value: &Quantity) {
-        let of_contact = matches!(of, Instant::ContactForce(_) | Instant::ContactFriction(_));
+        let of_contact = matches!(
+            of,
+            Instant::ContactForce(_) | Instant::ContactFriction(_) | Instant::SlipPower(_)
+        );
         if of_contact && value.value == 0.0 {
-            let found = "0, the force as long as nothing touches";
+            let found = "0, as long as nothing touches";
             let expected = "a level above 0, such as a hundredth of the largest force";
             self.fault(Finding::new(pointer, found, expected));
         }

@@ -137,12 +137,18 @@ const BDF: Method = Method::Bdf {
 /// (`benchmarks.rs` runs them through it with reductions).
 #[test]
 fn every_problem_moves_the_same_lowered() {
-    let all: [(&str, bool, &[Method], f64); 25] = [
+    let all: [(&str, bool, &[Method], f64); 26] = [
         ("bump_stop", true, &[Method::Dop853, RADAU], 1e-10),
         ("cart_pole", true, &[Method::Dop853, RADAU], 1e-10),
         ("desk_lamp", true, &[Method::Dop853], 1e-11),
         ("rotor", false, &[Method::Dop853], 1e-11),
         ("fit_pendulum", true, &[Method::Dop853, RADAU], 1e-11),
+        (
+            "gripper",
+            false,
+            &[Method::GeneralisedAlpha { radius: 0.8 }],
+            1e-10,
+        ),
         ("jumping_leg", true, &[Method::Dop853, RADAU], 1e-10),
         ("planetary_gear", true, &[Method::Dop853], 1e-9),
         ("quadruped", false, &[Method::Dop853, RADAU], 1e-11),

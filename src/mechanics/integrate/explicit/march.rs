@@ -26,6 +26,9 @@ use crate::system::{BodyMotion, Numbering};
 
 /// A correction of the velocities above this, relative to their scale, is no error of the step.
 const LOST: f64 = 0.01;
+
+/// Stages without weight see a force that the others miss if their accelerations change by more than this times those of the others.
+const UNSEEN: f64 = 10.0;
 /// A given step fails above this estimated error, relative to the scale.
 const UNSTABLE: f64 = 0.1;
 /// Fractions of a step at which the constraints are checked, and their largest violation: relative
@@ -147,7 +150,13 @@ pub fn march<S: SolveScalar>(
         let mut exchanged = None;
         let tried = stepper
             .stages(from.view(), (start, h))
-            .map(|()| error(&mut stepper, &scale, from.view(), h))
+            .map(|()| {
+                let error = error(&mut stepper, &scale, from.view(), h);
+                match touches.is_some() {
+                    true => error.max(unweighted(&mut stepper, &scale, from.view(), h)),
+                    false => error,
+                }
+            })
             .and_then(|error| {
                 // The tolerance judges steps that may be replaced by others.
                 if given && (error > UNSTABLE || error.is_nan()) {
@@ -392,6 +401,23 @@ fn error<S: SolveScalar>(stepper: &mut Stepper<S>, scale: &Scale, from: NodeView
         0.0
     } else {
         e5 / denominator.sqrt()
+    }
+}
+
+/// The change of velocity by what stages without weight have met and all others have not; 0 if these have met it too. A contact that
+/// throws off the stages that meet it leaves no other trace in the step.
+fn unweighted<S: SolveScalar>(
+    stepper: &mut Stepper<S>,
+    scale: &Scale,
+    from: NodeView<S>,
+    h: S,
+) -> f64 {
+    let numbering = stepper.field.numbering;
+    let speeds = scale.speeds(numbering, from.v, &stepper.data.v_raw);
+    let [without, with] = stepper.changes(h, |q, v| scale.square(numbering, q, v, speeds));
+    match without > UNSEEN * UNSEEN * with {
+        true => without.sqrt(),
+        false => 0.0,
     }
 }
 

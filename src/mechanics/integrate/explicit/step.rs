@@ -299,6 +299,23 @@ impl<'a, S: SolveScalar> Stepper<'a, S> {
         })
     }
 
+    /// The largest h (a_i − a_1) of the stages without weight, and of those with one, by the norm `measure`.
+    pub fn changes(&mut self, h: S, measure: impl Fn(&[S], &[S]) -> f64) -> [f64; 2] {
+        let (q, v, _) = &mut self.scratch;
+        q.fill(S::zero());
+        let n = v.len();
+        let mut most = [0.0_f64; 2];
+        for stage in 1..STAGES {
+            let row = &self.data.a[stage * n..(stage + 1) * n];
+            for ((out, &a), &first) in v.iter_mut().zip(row).zip(&self.data.a[..n]) {
+                *out = (a - first) * h;
+            }
+            let weighted = usize::from(B.iter().any(|own| own.0 == stage));
+            most[weighted] = most[weighted].max(measure(q, v));
+        }
+        most
+    }
+
     /// Correction of the velocities by the projection of the last step, by the norm `measure`. It
     /// is zero if the joints form no loop: such scenes have no singular positions.
     pub fn velocity_correction(&mut self, measure: impl Fn(&[S], &[S]) -> f64) -> f64 {

@@ -10,9 +10,12 @@
 //! momentum and angular momentum are kept. φ is known up to a quarter turn.
 
 use super::Acting;
-use super::pull::Pulled;
+use super::bearing::{self, resistance};
+use super::power::{along, rate_of};
+use super::pull::{Pulled, pull_along};
 use crate::math::{Scalar, Vec3};
 use crate::model::ConstraintRow;
+use crate::model::load::BearingFriction;
 use crate::system::bodies::BodyMotion;
 use crate::system::constraint;
 use crate::system::rows::RowCotangent;
@@ -87,9 +90,16 @@ fn reaction<S: Scalar>([k, c]: [&[S]; 2], x: &Six<S>, rate: &Six<S>) -> Six<S> {
     std::array::from_fn(|i| elastic[i] + viscous[i])
 }
 
+/// K and C, and the friction of a bearing.
+pub(super) type Law<'a, S> = ([&'a [S]; 2], Option<&'a BearingFriction<S>>);
+
 /// Force (ground axes) and torque (body axes) on body A and on body B.
-pub(super) fn forces<S: Scalar>(law: [&[S]; 2], at: &Acting<S>) -> [(Vec3<S>, Vec3<S>); 2] {
-    let weights = spread(&reaction(law, &values(at), &rates(at)));
+pub(super) fn forces<S: Scalar>(
+    (law, friction): Law<S>,
+    at: &Acting<S>,
+) -> [(Vec3<S>, Vec3<S>); 2] {
+    let reaction = reaction(law, &values(at), &rates(at));
+    let weights = spread(&reaction);
     let none = (Vec3::zeros(), Vec3::zeros());
     let mut on = [none, none];
     for (row, weight) in ROWS.into_iter().zip(weights) {
@@ -98,6 +108,14 @@ pub(super) fn forces<S: Scalar>(law: [&[S]; 2], at: &Acting<S>) -> [(Vec3<S>, Ve
         on[0].1 -= g.torque_a * weight;
         on[1].0 += g.force * weight;
         on[1].1 -= g.torque_b * weight;
+    }
+    if let Some(own) = friction {
+        let across = [reaction[0], reaction[1]];
+        let more = along(at, own.dof, |rate| -resistance(own, across, rate).value);
+        for (on, (force, torque)) in on.iter_mut().zip(more) {
+            on.0 += force;
+            on.1 += torque;
+        }
     }
     on
 }
@@ -124,12 +142,23 @@ fn pull_rows<S: Scalar>(at: &Acting<S>, [x, rate, virtually]: [&Six<S>; 3], out:
 
 /// Adds the derivatives of ψᵀf; `virtually` has the velocities ψ.
 pub(super) fn pull<S: Scalar>(
-    law @ [k, c]: [&[S]; 2],
+    (law @ [k, c], friction): Law<S>,
     at: &Acting<S>,
     virtually: &Acting<S>,
     out: &mut Pulled<S>,
 ) {
     let (x, rate, along) = (values(at), rates(at), rates(virtually));
+    let reaction = reaction(law, &x, &rate);
+    let mut by_reaction = along.map(|x| -x);
+    if let Some(own) = friction {
+        let by = resistance(own, [reaction[0], reaction[1]], rate_of(at, own.dof));
+        let law = |_| (-by.value, -by.by_rate);
+        let (_, turned) = pull_along(at, virtually, own.dof, law, out);
+        for (by_force, own) in by_reaction.iter_mut().zip(by.by_forces) {
+            *by_force -= own * turned;
+        }
+        out.set_scalars::<{ bearing::PARAMETERS }>(by.by_own.map(|own| -(own * turned)));
+    }
     let both = |side: &JointSide<S>, psi: &JointSide<S>| BodyMotion {
         virtual_velocity: psi.motion.velocity,
         virtual_omega: psi.motion.omega,
@@ -141,12 +170,13 @@ pub(super) fn pull<S: Scalar>(
         a: JointSide::fixed(&motions[0], at.a.frame),
         b: JointSide::fixed(&motions[1], at.b.frame),
         counted: None,
+        end: 0.0,
     };
     let minus = |all: Six<S>| all.map(|x| -x);
-    let (by_x, by_rate) = (minus(transposed(k, &along)), minus(transposed(c, &along)));
-    let by_along = minus(reaction(law, &x, &rate));
+    let (by_x, by_rate) = (transposed(k, &by_reaction), transposed(c, &by_reaction));
+    let by_along = minus(reaction);
     pull_rows(&moving, [&by_x, &by_rate, &by_along], out);
-    out.six = Some([minus(along), x, rate]);
+    out.six = Some([by_reaction, x, rate]);
 }
 
 /// Adds the derivatives of `weight` V.

@@ -1,11 +1,9 @@
 //! How near the stops, contacts and slack cables of a scene are, for the control of steps.
 
-use super::power::speed_seen;
 use super::{cable, contact, for_loads, stop};
 use crate::math::Scalar;
 use crate::model::{LoadKind, Model};
 use crate::system::bodies::BodyMotion;
-use std::ops::Range;
 
 /// A place where a load may begin to press.
 #[derive(Clone, Copy, Debug)]
@@ -32,7 +30,7 @@ pub fn may_touch<S>(kind: &LoadKind<S>) -> bool {
 pub fn gaps<S: Scalar>(
     model: &Model<S>,
     (motions, time): (&[BodyMotion<S>], f64),
-    of: Range<usize>,
+    of: impl Iterator<Item = usize> + Clone,
     out: &mut Vec<Gap>,
 ) {
     out.clear();
@@ -50,10 +48,7 @@ pub fn gaps<S: Scalar>(
         }
         if let LoadKind::Contact(own) = kind {
             let depth = contact::penetration(own, at).re();
-            let rolls = (own.wheel.as_ref()).map_or(0.0, |wheel| {
-                wheel.radius.re() * at.a.motion.omega.map(|x| x.re()).norm()
-            });
-            add(depth, speed_seen(at) + rolls, own.law.width);
+            add(depth, contact::speed(own, at), own.law.width);
         }
     });
     for load in of {

@@ -22,11 +22,20 @@ pub(super) fn forces<S: Scalar>(
     match kind {
         LoadKind::Contact(contact) => contact::forces(contact, at),
         LoadKind::Bushing {
-            stiffness, damping, ..
-        } => bushing::forces([stiffness, damping], at),
+            stiffness,
+            damping,
+            friction,
+            ..
+        } => bushing::forces(([stiffness, damping], friction.as_ref()), at),
         LoadKind::Drag {
-            coefficient, width, ..
-        } => [drag::force(at, *coefficient, *width), none],
+            coefficient,
+            width,
+            plate,
+            ..
+        } => [
+            drag::force((*coefficient, *width, plate.as_ref()), at),
+            none,
+        ],
         _ => power::forces(kind, at, time),
     }
 }
@@ -52,11 +61,23 @@ pub(super) fn pulled<S: Scalar>(
     match kind {
         LoadKind::Contact(contact) => contact::pull(contact, at, &virtually, &mut out),
         LoadKind::Bushing {
-            stiffness, damping, ..
-        } => bushing::pull([stiffness, damping], at, &virtually, &mut out),
+            stiffness,
+            damping,
+            friction,
+            ..
+        } => {
+            let law = ([&stiffness[..], damping], friction.as_ref());
+            bushing::pull(law, at, &virtually, &mut out);
+        }
         LoadKind::Drag {
-            coefficient, width, ..
-        } => drag::pull(at, &virtually, [*coefficient, *width], &mut out),
+            coefficient,
+            width,
+            plate,
+            ..
+        } => {
+            let law = (*coefficient, *width, plate.as_ref());
+            drag::pull(law, at, &virtually, &mut out);
+        }
         _ => pull::pull(kind, at, time, &virtually, &mut out),
     }
     out

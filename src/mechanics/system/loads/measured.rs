@@ -2,7 +2,7 @@
 
 use super::pull::Pulled;
 use super::{
-    Acting, LoadCotangent, cable, contact, controlled, for_each_load, give_to_parameters,
+    Acting, LoadCotangent, cable, contact, controlled, for_loads, give_to_parameters,
     give_to_states, spring, stop,
 };
 use crate::math::Scalar;
@@ -29,6 +29,8 @@ pub enum LoadPart {
     NormalTorque,
     /// Size of the friction of a contact \[N\].
     Friction,
+    /// Power that the friction of a contact takes, never negative \[W\].
+    SlipPower,
     /// Force by which a controller acts along its coordinate \[N\].
     EffortForce,
     /// The same about the axis of a joint \[N m\].
@@ -60,13 +62,23 @@ pub fn value<S: Scalar>(at: &InMotion<S>, measure: LoadMeasure) -> S {
     if let Some(value) = own {
         return value;
     }
-    let mut value = S::zero();
-    for_each_load(at.model, at.motions, |i, kind, acting| {
-        if i == measure.load {
-            value = of(kind, acting, measure.part);
-        }
+    let mut value: Option<S> = None;
+    for_loads(at.model, at.motions, [measure.load], |_, kind, acting| {
+        let own = of(kind, acting, measure.part);
+        // Forces of both ends of a capsule add, and the deeper end counts.
+        value = Some(match value {
+            None => own,
+            Some(first) if measure.part == LoadPart::Penetration => {
+                if own.re() > first.re() {
+                    own
+                } else {
+                    first
+                }
+            }
+            Some(first) => first + own,
+        });
     });
-    value
+    value.unwrap_or_else(S::zero)
 }
 
 const CHECKED: &str = "a load has this measure, which is checked";
@@ -84,6 +96,7 @@ fn of<S: Scalar>(kind: &LoadKind<S>, at: &Acting<S>, part: LoadPart) -> S {
             _ => stop::of(kind).expect(CHECKED).normal(at),
         },
         LoadPart::Friction => contact::tangential(touching(kind), at),
+        LoadPart::SlipPower => contact::slip_power(touching(kind), at),
         LoadPart::EffortForce
         | LoadPart::EffortTorque
         | LoadPart::ErrorLength
@@ -132,12 +145,19 @@ pub fn pull_back(
 }
 
 fn pull_others(at: &InMotion<f64>, measure: LoadMeasure, weight: f64, out: &mut JointCotangent) {
-    for_each_load(at.model, at.motions, |i, kind, acting| {
-        if i == measure.load {
-            let pulled = pull(kind, acting, measure.part, weight);
-            give_to_states(&pulled, acting, at.numbering, (&mut out.y, &mut out.v));
-            give_to_parameters(kind, &pulled, (i, 0.0), (out.model, &mut 0.0));
+    let deepest = match measure.part {
+        LoadPart::Penetration => Some(value(at, measure)),
+        _ => None,
+    };
+    let mut given = false;
+    for_loads(at.model, at.motions, [measure.load], |i, kind, acting| {
+        if deepest.is_some_and(|own| given || of(kind, acting, measure.part) < own) {
+            return;
         }
+        given = true;
+        let pulled = pull(kind, acting, measure.part, weight);
+        give_to_states(&pulled, acting, at.numbering, (&mut out.y, &mut out.v));
+        give_to_parameters(kind, &pulled, (i, acting.end, 0.0), (out.model, &mut 0.0));
     });
 }
 
@@ -161,6 +181,7 @@ fn pull(kind: &LoadKind<f64>, at: &Acting<f64>, part: LoadPart, weight: f64) -> 
             stop.pull_penetration(at, weight, &mut out);
         }
         LoadPart::Friction => contact::pull_tangential(touching(kind), at, weight, &mut out),
+        LoadPart::SlipPower => contact::pull_slip_power(touching(kind), at, weight, &mut out),
         LoadPart::EffortForce
         | LoadPart::EffortTorque
         | LoadPart::ErrorLength

@@ -3,9 +3,12 @@
 //! For virtual velocities ψ, ψᵀf is the power of a load, linear in ψ. `power.rs` has the forces and
 //! `pull.rs` the transposed derivative of the power, once for each kind and for any scalar. Forces,
 //! Jacobians and pull-backs all use these two, so they agree. Springs have both in `spring.rs`, stops in `stop.rs`, contacts in
-//! `contact.rs`, controllers in `control_law.rs` and `controller.rs` with the limits of their motors in `motor.rs`, bushings in `bushing.rs`, and the law of the former is in `normal_law.rs`. Loads that are spread over the elements of a
-//! flexible body act on its coordinates too: `distributed.rs` has all of theirs.
+//! `contact/`, drag in `drag.rs`, bushings in `bushing.rs` with the friction of their bearings in `bearing.rs`, controllers in
+//! `control_law.rs` and `controller.rs` with the limits of their motors in `motor.rs`. The law of stops, contacts and cables is in
+//! `normal_law.rs`. Loads that are spread over the elements of a flexible body act on its coordinates too: `distributed/` has all of
+//! theirs.
 
+mod bearing;
 mod bushing;
 pub mod cable;
 mod contact;
@@ -38,7 +41,6 @@ use crate::math::{Scalar, Vec3};
 use crate::model::{Axes, DegreeOfFreedom, JointFrame, LoadKind, Model};
 use parameters::give_to_parameters;
 use pull::Pulled;
-use std::ops::Range;
 
 pub use controlled::settled as settled_states;
 pub use distributed::normal_shares;
@@ -50,9 +52,12 @@ pub(super) struct Acting<'a, S> {
     b: JointSide<'a, S>,
     /// The angle of the joint with all its turns, if they are counted \[rad\].
     counted: Option<f64>,
+    /// The end of the capsule which a contact has, 1 or −1, or 0.
+    end: f64,
 }
 
-/// Calls `visit(number of the load, its kind, its bodies)` for every load on one or two bodies.
+/// Calls `visit(number of the load, its kind, its bodies)` for every load on one or two bodies; twice for a contact of both ends of a
+/// capsule.
 fn for_each_load<S: Scalar>(
     model: &Model<S>,
     motions: &[BodyMotion<S>],
@@ -61,16 +66,28 @@ fn for_each_load<S: Scalar>(
     for_loads(model, motions, 0..model.loads.len(), visit);
 }
 
+/// The same without contacts of which the bodies are far from each other.
+fn for_near_loads<S: Scalar>(
+    here: &InMotion<S>,
+    visit: impl FnMut(usize, &LoadKind<S>, &Acting<S>),
+) {
+    let (model, motions) = (here.model, here.motions);
+    match here.numbering.near() {
+        None => for_each_load(model, motions, visit),
+        Some(near) => {
+            let place = |body: usize| motions[body].position.map(Scalar::re);
+            for_loads(model, motions, near.loads(place, |_| 0.0), visit);
+        }
+    }
+}
+
 /// The same for some of the loads.
 fn for_loads<S: Scalar>(
     model: &Model<S>,
     motions: &[BodyMotion<S>],
-    wanted: Range<usize>,
+    wanted: impl IntoIterator<Item = usize>,
     mut visit: impl FnMut(usize, &LoadKind<S>, &Acting<S>),
 ) {
-    if wanted.is_empty() {
-        return;
-    }
     let (ground, nowhere) = (BodyMotion::ground(), JointFrame::zero());
     let at = |point: &Vec3<S>| JointFrame {
         point: *point,
@@ -82,6 +99,7 @@ fn for_loads<S: Scalar>(
         a: JointSide::fixed(&motions[body_a], frame_a),
         b: JointSide::fixed(body_b.map_or(&ground, |body| &motions[body]), frame_b),
         counted: None,
+        end: 0.0,
     };
     let on_joint = |joint: usize| {
         let joint = &model.joints[joint];
@@ -109,8 +127,17 @@ fn for_loads<S: Scalar>(
                 ..
             } => acting((*body_a, at(point_a)), (*body_b, at(point_b))),
             LoadKind::Contact(own) => {
-                let a = (own.body_a, at(&own.point_a));
-                acting(a, (own.body_b, at(&own.point_b)))
+                let to = |point: Vec3<S>| {
+                    acting((own.body_a, at(&point)), (own.body_b, at(&own.point_b)))
+                };
+                if let Some(half) = own.ends() {
+                    for end in [1.0, -1.0] {
+                        let acting = to(own.point_a + half * S::from(end));
+                        visit(i, &load.kind, &Acting { end, ..acting });
+                    }
+                    continue;
+                }
+                to(own.point_a)
             }
             // The angle of a spring or a stop is that of the bodies; it does not include drives.
             LoadKind::TorsionSpring { joint, counter, .. }
@@ -136,7 +163,7 @@ fn for_loads<S: Scalar>(
 /// Adds the generalised forces f of all loads (force in ground axes, torque in body axes about the
 /// reference point, those on elastic coordinates) to `out`, in velocity numbering.
 pub fn add_forces<S: Scalar>(here: &InMotion<S>, out: &mut [S]) {
-    for_each_load(here.model, here.motions, |_, kind, at| {
+    for_near_loads(here, |_, kind, at| {
         let forces = kinds::forces(kind, at, here.time);
         for (body, (force, torque)) in at.bodies.into_iter().zip(forces) {
             let Some(body) = body else { continue };
@@ -161,7 +188,7 @@ pub fn add_supplying_forces<S: Scalar>(here: &InMotion<S>, out: &mut [S]) {
             add6(&mut out[here.numbering.velocity(body)..], &force, &torque);
         }
     });
-    distributed::add_forces(here, out);
+    distributed::add_supplying_forces(here, out);
     controller::add_efforts(here, out);
 }
 
@@ -205,7 +232,9 @@ fn blocks<S: Scalar>(kind: &LoadKind<S>) -> Blocks {
             None => of(ANGULAR, ANGULAR, damped(damping, ANGULAR)),
         },
         LoadKind::Contact(_) => of(BOTH, BOTH, BOTH),
-        LoadKind::Bushing { damping, .. } => match damping.iter().all(|c| c.is_zero()) {
+        LoadKind::Bushing {
+            damping, friction, ..
+        } => match damping.iter().all(|c| c.is_zero()) && friction.is_none() {
             true => of(BOTH, BOTH, NONE),
             false => of(BOTH, BOTH, BOTH),
         },
@@ -252,6 +281,11 @@ pub fn emit_jacobian<S: Scalar>(here: &InMotion<S>, to: &LoadEntries<S>, emit: &
     let numbering = here.numbering;
     for_each_load(here.model, here.motions, |_, kind, at| {
         let blocks = blocks(kind);
+        // The places of a contact that does not touch stay in the pattern of the matrix.
+        let acts = match kind {
+            LoadKind::Contact(own) => contact::touches(own, at),
+            _ => true,
+        };
         // One row of the Jacobian for each unit virtual velocity of either body.
         for side in 0..2 {
             let Some(body) = at.bodies[side] else {
@@ -264,7 +298,10 @@ pub fn emit_jacobian<S: Scalar>(here: &InMotion<S>, to: &LoadEntries<S>, emit: &
                 let mut psi = [(Vec3::zeros(), Vec3::zeros()); 2];
                 let (linear, angular) = &mut psi[side];
                 [linear, angular][component / 3][component % 3] = S::one();
-                let pulled = kinds::pulled(kind, at, here.time, &psi);
+                let pulled = match acts {
+                    true => kinds::pulled(kind, at, here.time, &psi),
+                    false => Pulled::zero(),
+                };
                 let row = to.row + numbering.velocity(body) + component;
                 for (body, by) in at.bodies.into_iter().zip([&pulled.a, &pulled.b]) {
                     let Some(body) = body else { continue };
@@ -303,7 +340,7 @@ pub struct LoadCotangent<'a> {
 /// and parameters.
 pub fn pull_back(here: &InMotion<f64>, psi: &[f64], out: &mut LoadCotangent) {
     let (numbering, time) = (here.numbering, here.time);
-    for_each_load(here.model, here.motions, |i, kind, at| {
+    for_near_loads(here, |i, kind, at| {
         let psi = at.bodies.map(|body| {
             body.map_or((Vec3::zeros(), Vec3::zeros()), |body| {
                 velocities_of(&psi[numbering.velocity(body)..])
@@ -311,7 +348,7 @@ pub fn pull_back(here: &InMotion<f64>, psi: &[f64], out: &mut LoadCotangent) {
         });
         let pulled = kinds::pulled(kind, at, time, &psi);
         give_to_states(&pulled, at, numbering, (&mut out.y, &mut out.v));
-        give_to_parameters(kind, &pulled, (i, time), (out.model, out.time));
+        give_to_parameters(kind, &pulled, (i, at.end, time), (out.model, out.time));
     });
     distributed::pull_back(here, psi, out);
     controller::pull_back(here, psi, out);
@@ -408,12 +445,12 @@ pub fn potential<S: Scalar>(model: &Model<S>, motions: &[BodyMotion<S>], time: S
 
 /// Adds `weight` times the derivative of [`potential`] to tangent positions, time and parameters.
 pub fn pull_potential(here: &InMotion<f64>, weight: f64, out: &mut LoadCotangent) {
-    for_each_load(here.model, here.motions, |i, kind, at| {
+    for_near_loads(here, |i, kind, at| {
         let Some(pulled) = kinds::pulled_potential(kind, at, weight) else {
             return;
         };
         give_to_states(&pulled, at, here.numbering, (&mut out.y, &mut None));
-        give_to_parameters(kind, &pulled, (i, 0.0), (out.model, &mut 0.0));
+        give_to_parameters(kind, &pulled, (i, at.end, 0.0), (out.model, &mut 0.0));
     });
     cable::pull_potential(here, weight, out);
 }

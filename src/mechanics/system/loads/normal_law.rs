@@ -93,6 +93,11 @@ impl<S: Scalar> NormalForce<S> {
     }
 }
 
+/// Whether a penetration is beyond the start of the onset.
+pub(super) fn touches<S: Scalar>(law: &NormalLaw<S>, penetration: S) -> bool {
+    (penetration / law.width + 0.5).re() > 0.0
+}
+
 /// The normal force at a penetration and its rate.
 pub(super) fn force<S: Scalar>(law: &NormalLaw<S>, penetration: S, rate: S) -> NormalForce<S> {
     let (n, k, c) = (law.exponent, law.stiffness, law.dissipation);

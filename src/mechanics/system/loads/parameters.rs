@@ -1,15 +1,15 @@
 //! Adds the derivatives of a load's power to the cotangents of its parameters.
 
 use super::pull::Pulled;
-use super::{bushing, contact, spring, stop};
+use super::{bushing, contact, drag, spring, stop};
 use crate::model::{JointFrame, LoadKind, Model};
 
 /// Adds the derivatives in a load's parameters to the cotangent of the model, and that in time to
-/// `by_time`. Functions of time are differentiated.
+/// `by_time`. Functions of time are differentiated. `end` is that of the capsule which a contact has, or 0.
 pub(super) fn give_to_parameters(
     kind: &LoadKind<f64>,
     pulled: &Pulled<f64>,
-    (load, now): (usize, f64),
+    (load, end, now): (usize, f64, f64),
     (model, by_time): (&mut Model<f64>, &mut f64),
 ) {
     let [s0, s1, s2, s3, ..] = pulled.scalars;
@@ -98,9 +98,18 @@ pub(super) fn give_to_parameters(
         (
             LoadKind::Bushing { joint, .. },
             LoadKind::Bushing {
-                stiffness, damping, ..
+                stiffness,
+                damping,
+                friction,
+                ..
             },
         ) => {
+            if let Some(own) = friction {
+                own.coefficient += s0;
+                own.radius += s1;
+                own.width += s2;
+                own.load_width += s3;
+            }
             if let Some(six) = &pulled.six {
                 bushing::give(six, stiffness, damping);
             }
@@ -135,14 +144,19 @@ pub(super) fn give_to_parameters(
                 point,
                 coefficient,
                 width,
+                plate,
                 ..
             },
         ) => {
             *point += pulled.a.frame.point;
-            *coefficient += s0;
-            *width += s1;
+            *coefficient += pulled.scalars[drag::COEFFICIENT];
+            *width += pulled.scalars[drag::WIDTH];
+            if let Some(own) = plate {
+                own.normal += pulled.direction;
+                own.coefficient += pulled.scalars[drag::PLATE];
+            }
         }
-        (LoadKind::Contact(_), LoadKind::Contact(own)) => contact::give(pulled, own),
+        (LoadKind::Contact(_), LoadKind::Contact(own)) => contact::give(pulled, end, own),
         (LoadKind::Distributed(_), LoadKind::Distributed(_))
         | (LoadKind::Cable(_), LoadKind::Cable(_))
         | (LoadKind::Controller(_), LoadKind::Controller(_)) => {}

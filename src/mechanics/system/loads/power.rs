@@ -86,8 +86,16 @@ pub(super) fn damping<S: Scalar>(c: S, table: &Option<ForceTable<S>>, rate: S) -
     [-(c * rate + force), -(c + slope)]
 }
 
+/// The rate of a degree of freedom of a joint.
+pub(super) fn rate_of<S: Scalar>(at: &Acting<S>, dof: DegreeOfFreedom) -> S {
+    match dof {
+        DegreeOfFreedom::Rotation => turn_rate(at),
+        DegreeOfFreedom::Translation => constraint::rate(SLIDE, &at.a, &at.b),
+    }
+}
+
 /// Forces of size `law(rate)` along or about the axis of a joint.
-fn along<S: Scalar>(
+pub(super) fn along<S: Scalar>(
     at: &Acting<S>,
     dof: DegreeOfFreedom,
     law: impl Fn(S) -> S,

@@ -11,7 +11,7 @@ use crate::system::rows::RowCotangent;
 use crate::system::side::JointSide;
 
 /// Most scalars of a load: a contact has as many.
-pub(super) const SCALARS: usize = 8;
+pub(super) const SCALARS: usize = 10;
 
 /// Derivatives of the power (or energy) of a load.
 pub(super) struct Pulled<S> {
@@ -19,7 +19,7 @@ pub(super) struct Pulled<S> {
     pub a: SideCotangent<S>,
     /// The same for body B.
     pub b: SideCotangent<S>,
-    /// In the direction of a force or torque.
+    /// In the direction of a force or torque, or that of the shape of a contact.
     pub direction: Vec3<S>,
     /// Of a contact: in the directions of its surface.
     pub directions: [Vec3<S>; 3],
@@ -77,6 +77,7 @@ pub(super) fn with_motions<'a, S: Scalar>(
         a: JointSide::fixed(&motions[0], at.a.frame),
         b: JointSide::fixed(&motions[1], at.b.frame),
         counted: at.counted,
+        end: at.end,
     }
 }
 
@@ -281,7 +282,7 @@ pub(super) fn pull_angle<S: Scalar>(at: &Acting<S>, cot: S, out: &mut Pulled<S>)
 
 /// Pulls back the power of a force along or about the axis of a joint, `law(rate)` = (size, its
 /// derivative). Returns the rate and the virtual rate.
-fn pull_along<S: Scalar>(
+pub(super) fn pull_along<S: Scalar>(
     at: &Acting<S>,
     virtually: &Acting<S>,
     dof: DegreeOfFreedom,

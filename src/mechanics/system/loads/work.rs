@@ -4,7 +4,7 @@ use super::kinds::{forces, pulled as pull};
 use super::parameters::{give_to_joint, give_to_parameters};
 use super::power::{SLIDE, turn_rate};
 use super::pull::{Pulled, pull_slide, pull_turn};
-use super::{Acting, LoadCotangent, cable, controlled, distributed, for_each_load, give_to_states};
+use super::{Acting, LoadCotangent, cable, controlled, distributed, for_loads, give_to_states};
 use crate::math::{Scalar, Vec3};
 use crate::model::DegreeOfFreedom;
 use crate::system::bodies::{BodyMotion, add6};
@@ -27,13 +27,11 @@ pub fn power<S: Scalar>(here: &InMotion<S>, load: usize) -> S {
         return power;
     }
     let mut found = S::zero();
-    for_each_load(here.model, here.motions, |i, kind, at| {
-        if i == load {
-            let pairs = forces(kind, at, here.time).into_iter().zip(velocities(at));
-            found = pairs.fold(S::zero(), |sum, ((force, torque), (velocity, omega))| {
-                sum + force.dot(&velocity) + torque.dot(&omega)
-            });
-        }
+    for_loads(here.model, here.motions, [load], |_, kind, at| {
+        let pairs = forces(kind, at, here.time).into_iter().zip(velocities(at));
+        found += pairs.fold(S::zero(), |sum, ((force, torque), (velocity, omega))| {
+            sum + force.dot(&velocity) + torque.dot(&omega)
+        });
     });
     found
 }
@@ -41,15 +39,17 @@ pub fn power<S: Scalar>(here: &InMotion<S>, load: usize) -> S {
 /// Adds `weight` times the derivative of [`power`] to states and parameters. Returns the derivative in time.
 pub fn pull_power(here: &InMotion<f64>, load: usize, weight: f64, out: &mut JointCotangent) -> f64 {
     let mut by_time = 0.0;
-    for_each_load(here.model, here.motions, |i, kind, at| {
-        if i != load {
-            return;
-        }
+    for_loads(here.model, here.motions, [load], |i, kind, at| {
         // The power is linear in the velocities that the forces are weighed with.
         let weighed = velocities(at).map(|(velocity, omega)| (velocity * weight, omega * weight));
         let pulled = pull(kind, at, here.time, &weighed);
         give_to_states(&pulled, at, here.numbering, (&mut out.y, &mut out.v));
-        give_to_parameters(kind, &pulled, (i, here.time), (out.model, &mut by_time));
+        give_to_parameters(
+            kind,
+            &pulled,
+            (i, at.end, here.time),
+            (out.model, &mut by_time),
+        );
         let all = at.bodies.into_iter().zip(forces(kind, at, here.time));
         for (body, (force, torque)) in all {
             if let (Some(body), Some(v)) = (body, out.v.as_deref_mut()) {
@@ -84,6 +84,7 @@ fn at_joint<S: Scalar, T>(
         a,
         b,
         counted: None,
+        end: 0.0,
     })
 }
 

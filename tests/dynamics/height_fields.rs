@@ -1,0 +1,271 @@
+//! Contacts on height fields: planes and balls that a field stands for, energy, derivatives by every method, the same in other
+//! descriptions, and faults.
+
+use super::couplings::{close, turned};
+use crate::reference::documents::{
+    in_units, methods, problem as parsed, reversed, unlowered_values, values, vary,
+};
+use crate::reference::gradients::gradients_are_exact;
+use flexbody_problem::Problem;
+use serde_json::Value;
+
+fn component(quantity: &str, direction: [f64; 3]) -> Value {
+    json!({"final": {quantity: {"body": "ball", "direction": direction}}})
+}
+
+/// A spinning ball above a surface of ground.
+fn ball(surface: Value, at: [f64; 3], simulation: Value) -> Value {
+    json!({
+        "version": 1, "name": "ball", "gravity": [0, -9.81, 0],
+        "bodies": {"ball": {"shape": {"sphere": {"radius": 0.1}}, "mass": 2, "place": {"at": [0.05, 0.3, 0.1]},
+                            "velocity": {"linear": [1, -0.5, 0.3], "angular": [3, -2, 1]}}},
+        "loads": {"ground": {"contact": {"between": ["ball", "ground"], "at": {"a": [0, 0, 0], "b": at}, "radius": 0.1,
+                                         "surface": surface, "stiffness": 2e4, "dissipation": 0.2, "width": 2e-3,
+                                         "friction": {"coefficient": 0.3, "width": 0.02}}}},
+        "simulation": simulation,
+        "functions": {
+            "x": component("position", [1.0, 0.0, 0.0]), "y": component("position", [0.0, 1.0, 0.0]),
+            "z": component("position", [0.0, 0.0, 1.0]), "spin": component("angular_velocity", [0.3, 0.5, 1.0]),
+            "depth": {"ks": {"rho": 300, "of": {"penetration": {"load": "ground"}}}},
+            "force": {"integral": {"contact_force": {"load": "ground"}}},
+            "loss": {"integral": {"slip_power": {"load": "ground"}}},
+            "energy": {"final": {"energy": "total"}}
+        }
+    })
+}
+
+/// The field with the heights `of` its places.
+fn field(along: &[f64], across: &[f64], of: impl Fn(f64, f64) -> f64) -> Value {
+    let row = |v: &f64| along.iter().map(|u| of(*u, *v)).collect::<Vec<f64>>();
+    let heights: Vec<Vec<f64>> = across.iter().map(row).collect();
+    json!({"height_field": {"normal": [0, 2, 0], "direction": [3, 0.4, 0], "along": along, "across": across, "heights": heights}})
+}
+
+fn grid(from: f64, to: f64, count: i32) -> Vec<f64> {
+    let at = |k: i32| from + (to - from) * f64::from(k) / f64::from(count - 1);
+    (0..count).map(at).collect()
+}
+
+/// Heights of an inclined plane are the plane, also beyond the grid; the ball runs over its edge.
+#[test]
+fn a_plane_field_is_a_plane() {
+    let simulation = json!({"duration": 0.8, "tolerance": 1e-10});
+    // Across is normal × direction, −z.
+    let heights = field(&[-1.0, 0.1, 0.3], &[-0.2, 0.0, 0.15], |u, v| {
+        0.02 + 0.1 * u - 0.2 * v
+    });
+    let plane = json!({"plane": {"normal": [-0.1, 1, -0.2]}});
+    let plane = values(&ball(plane, [0.0, 0.02, 0.0], simulation.clone()));
+    assert!(plane[5] > 5.0, "{plane:?}");
+    let found = values(&ball(heights, [0.0, 0.0, 0.0], simulation));
+    for (a, b) in found.iter().zip(&plane) {
+        close(*a, *b, 1e-7, "a plane");
+    }
+}
+
+/// Heights of a dome converge to its sphere by the fourth power of the spacing, but for the edges, where a natural spline has no
+/// curvature. Without friction the place of contact on the ball, which both have differently, does not count.
+#[test]
+fn a_dome_is_a_sphere() {
+    let simulation = || json!({"duration": 0.6, "tolerance": 1e-11});
+    let radius = 1.5_f64;
+    let exact = json!({"sphere": {"radius": radius}});
+    let smooth = |mut file: Value| {
+        file["loads"]["ground"]["contact"]["friction"]["coefficient"] = json!(0);
+        values(&file)
+    };
+    let exact = smooth(ball(exact, [0.1, -radius, 0.2], simulation()));
+    let off = |count: i32| {
+        let places = grid(-1.0, 1.0, count);
+        let dome = field(&places, &places, |u, v| {
+            (radius * radius - u * u - v * v).sqrt() - radius
+        });
+        let found = smooth(ball(dome, [0.1, 0.0, 0.2], simulation()));
+        (0..3)
+            .map(|k| (found[k] - exact[k]).abs())
+            .fold(0.0, f64::max)
+    };
+    let (coarse, fine) = (off(21), off(41));
+    println!("spacing 0.1 and 0.05 m: off by {coarse:.1e} and {fine:.1e} m");
+    assert!(fine < 2e-6 && fine < coarse / 5.0, "{coarse} {fine}");
+}
+
+/// A point that slides without friction over hills keeps its energy, and comes to the same height with the same speed.
+#[test]
+fn hills_keep_energy() {
+    let along = grid(-1.0, 5.0, 61);
+    let hills = field(&along, &[0.0], |u, _| 0.15 * (1.0 - (3.0 * u).cos()));
+    let mut file = ball(
+        hills,
+        [0.0, 0.0, 0.0],
+        json!({"duration": 1.5, "tolerance": 1e-10}),
+    );
+    file["bodies"]["ball"] = json!({"shape": "point", "mass": 2, "place": {"at": [0, 0.02, 0]}, "velocity": {"linear": [3, 0, 0.5]}});
+    let own = &mut file["loads"]["ground"]["contact"];
+    own["friction"]["coefficient"] = json!(0);
+    own["dissipation"] = json!(0);
+    own["radius"] = json!(0);
+    file["functions"] = json!({
+        "first": {"value": {"at": 0, "of": {"energy": "total"}}}, "last": {"final": {"energy": "total"}},
+        "way": component("position", [1.0, 0.0, 0.0]),
+        "across": component("position", [0.0, 0.0, 1.0])
+    });
+    let found = values(&file);
+    close(found[1], found[0], 1e-6, "energy");
+    close(found[3], 0.75, 1e-12, "nothing presses across");
+    assert!(found[2] > 2.5, "{found:?}");
+}
+
+/// A ball on a free plate that carries a field of hills.
+fn carried(simulation: Value) -> Value {
+    let hills = field(&grid(-0.5, 0.6, 8), &grid(-0.4, 0.5, 6), |u, v| {
+        0.03 * (5.0 * u).sin() * (4.0 * v + 0.3).cos()
+    });
+    let mut file = ball(hills, [0.0, 0.0, 0.0], simulation);
+    file["bodies"]["plate"] = json!({"shape": {"box": {"size": [1, 0.1, 1]}}, "mass": 3, "place": {"at": [0, 0, 0]},
+                                     "velocity": {"linear": [0, 1, 0], "angular": [0.4, 0.3, -0.5]}});
+    file["loads"]["ground"]["contact"]["between"] = json!(["ball", "plate"]);
+    file["loads"]["ground"]["contact"]["stiffness"] = json!(2000);
+    file["loads"]["ground"]["contact"]["width"] = json!(0.01);
+    file
+}
+
+#[test]
+fn gradients_by_every_method() {
+    for simulation in methods(0.4, 200) {
+        let mut file = carried(simulation.clone());
+        let own = "/loads/ground/contact";
+        vary(
+            &mut file,
+            &[
+                format!("{own}/radius"),
+                format!("{own}/stiffness"),
+                format!("{own}/friction/coefficient"),
+                format!("{own}/surface/height_field/normal/1"),
+                format!("{own}/surface/height_field/direction/1"),
+                "/bodies/plate/mass".into(),
+            ],
+        );
+        for (name, path) in [("tilt", "normal/0"), ("lean", "normal/2")] {
+            let path = format!("{own}/surface/height_field/{path}");
+            file["variables"][name] = json!({"path": path, "lower": -0.2, "upper": 0.2});
+        }
+        file["variables"]["place"] =
+            json!({"path": format!("{own}/at/b/0"), "lower": -0.1, "upper": 0.1});
+        gradients_are_exact(&parsed(&file), &simulation);
+    }
+}
+
+#[test]
+fn the_same_in_other_descriptions() {
+    let oblique = [[0.8, -0.48, 0.36], [0.6, 0.64, -0.48], [0.0, 0.6, 0.8]];
+    let apply = |x: [f64; 3]| oblique.map(|row| row.iter().zip(x).map(|(a, b)| a * b).sum::<f64>());
+    let file = carried(json!({"duration": 0.4, "tolerance": 1e-10}));
+    let reference = values(&file);
+    let agree = |found: &[f64], what: &str| {
+        for (a, b) in found.iter().zip(&reference) {
+            assert!(
+                (a - b).abs() < 1e-6 * b.abs().max(0.1),
+                "{what}: {found:?} {reference:?}"
+            );
+        }
+    };
+    let mut other = turned(&file, &oblique);
+    for (body, velocity, spin) in [
+        ("ball", [1.0, -0.5, 0.3], [3.0, -2.0, 1.0]),
+        ("plate", [0.0, 1.0, 0.0], [0.4, 0.3, -0.5]),
+    ] {
+        other["bodies"][body]["velocity"] =
+            json!({"linear": apply(velocity), "angular": apply(spin)});
+    }
+    let own = &mut other["loads"]["ground"]["contact"];
+    own["at"]["a"] = json!([0, 0, 0]);
+    own["surface"]["height_field"]["normal"] = json!(apply([0.0, 2.0, 0.0]));
+    own["surface"]["height_field"]["direction"] = json!(apply([3.0, 0.4, 0.0]));
+    agree(&values(&other), "turned");
+    agree(&values(&reversed(&file, &["bodies"])), "in another order");
+    agree(&unlowered_values(&file), "without reductions");
+    // Millimetres and tonnes; feet and pounds.
+    let own = "/loads/ground/contact";
+    let of = |key: &str| &*format!("{own}/{key}").leak();
+    let places = [
+        ("/gravity", 1, 0),
+        ("/bodies/ball/shape", 1, 0),
+        ("/bodies/ball/mass", 0, 1),
+        ("/bodies/ball/place/at", 1, 0),
+        ("/bodies/ball/velocity/linear", 1, 0),
+        ("/bodies/plate/shape", 1, 0),
+        ("/bodies/plate/mass", 0, 1),
+        ("/bodies/plate/velocity/linear", 1, 0),
+        (of("radius"), 1, 0),
+        (of("stiffness"), 0, 1),
+        (of("dissipation"), -1, 0),
+        (of("width"), 1, 0),
+        (of("friction/width"), 1, 0),
+        (of("surface/height_field/along"), 1, 0),
+        (of("surface/height_field/across"), 1, 0),
+        (of("surface/height_field/heights"), 1, 0),
+        ("/functions/depth/ks/rho", -1, 0),
+    ];
+    for (metre, kilogram) in [(1e3, 1e-3), (1.0 / 0.3048, 1.0 / 0.45359237)] {
+        let found = values(&in_units(&file, (metre, kilogram), &places));
+        let newton = metre * kilogram;
+        let joule = newton * metre;
+        let scales = [metre, metre, metre, 1.0, metre, newton, joule, joule];
+        let found: Vec<f64> = found
+            .iter()
+            .zip(scales)
+            .map(|(x, scale)| x / scale)
+            .collect();
+        agree(&found, "in other units");
+    }
+    let mut file = file;
+    file["bodies"]["case"] = json!({
+        "mass": 0.1, "inertia": {"xx": 0.001, "yy": 0.001, "zz": 0.001},
+        "place": {"at": [0.1, 0.05, 0.2], "turn": {"axis": [1, 2, 0.4], "angle": 0.9}},
+        "velocity": {"linear": [0, 1, 0], "angular": [0.4, 0.3, -0.5]}
+    });
+    file["joints"] = json!({"glue": {"weld": {"between": ["plate", "case"], "at": [0, 0.05, 0]}}});
+    for (a, b) in values(&file).iter().zip(unlowered_values(&file)) {
+        close(*a, b, 1e-6, "welded");
+    }
+}
+
+#[test]
+fn bad_fields_are_told() {
+    let told = |change: &dyn Fn(&mut Value), words: &[&str]| {
+        let mut file = carried(json!({"duration": 0.1}));
+        change(&mut file["loads"]["ground"]["contact"]);
+        let found = Problem::parse(&file.to_string(), "field.json", &[]);
+        let found = found.expect_err("a fault").to_string();
+        for word in words {
+            assert!(found.contains(word), "{found}");
+        }
+    };
+    let own = "/loads/ground/contact/surface/height_field";
+    let heights = format!("{own}/heights");
+    told(
+        &|contact| contact["surface"]["height_field"]["heights"] = json!([[0, 1]]),
+        &[&heights, "1 rows", "one for each place"],
+    );
+    told(
+        &|contact| contact["surface"]["height_field"]["along"][3] = json!(-2),
+        &[&format!("{own}/along/3"), "places that increase"],
+    );
+    told(
+        &|contact| contact["surface"]["height_field"]["direction"] = json!([0, -1, 0]),
+        &[&format!("{own}/direction"), "across"],
+    );
+    told(
+        &|contact| contact["radius"] = json!(2),
+        &[&heights, "hollow", "touches at one place"],
+    );
+    told(
+        &|contact| contact["half"] = json!([1, 0, 0]),
+        &["/loads/ground/contact/half", "spheres along its axis"],
+    );
+    told(
+        &|contact| contact["wheel"] = json!({"axis": [0, 0, 1], "radius": 0.1}),
+        &["/loads/ground/contact/wheel", "a plane"],
+    );
+}
