@@ -61,6 +61,43 @@ fn balls_rebound_by_the_implicit_formula() {
 }
 
 /// Two balls of masses m, M with the velocities v, 0 along the line of their centres: the velocity of separation is the
+/// A sphere that hits a plane by Hertz's law, exponent 3/2, without loss: the deepest place (5 m v²/4 k)^⅖, the largest force k δ^{3/2}, and
+/// the rebound after 2.9432 δ/v (Hertz 1882; Johnson, *Contact Mechanics*, section 11.4).
+#[test]
+fn a_hertzian_impact() {
+    let (mass, speed) = (0.3, 2.0);
+    // Steel, 20 mm: k = 4/3 E' √R.
+    let stiffness = 4.0 / 3.0 * (2.1e11 / (2.0 * (1.0 - 0.09))) * 0.01_f64.sqrt();
+    let depth = (1.25 * mass * speed * speed / stiffness).powf(0.4);
+    let lasts = 2.9432 * depth / speed;
+    let width = 1e-3 * depth;
+    let start = 0.01 + 0.1 * depth;
+    let (before, after) = (0.1 * depth / speed, 0.2 * depth / speed);
+    let found = values(&json!({
+        "version": 1, "name": "hertz", "gravity": [0, 0, 0],
+        "bodies": {"ball": {"shape": {"sphere": {"radius": 0.01}}, "mass": mass, "place": {"at": [0, start, 0]},
+                            "velocity": {"linear": [0, -speed, 0]}}},
+        "loads": {"plate": {"contact": {"between": ["ball", "ground"], "at": {"a": [0, 0, 0], "b": [0, 0, 0]}, "radius": 0.01,
+                                        "surface": {"plane": {"normal": [0, 1, 0]}}, "stiffness": stiffness, "exponent": 1.5,
+                                        "width": width}}},
+        "simulation": {"duration": before + lasts + after, "tolerance": 1e-11},
+        "functions": {
+            "depth": {"value": {"at": before + 0.5 * lasts, "of": {"penetration": {"load": "plate"}}}},
+            "force": {"value": {"at": before + 0.5 * lasts, "of": {"contact_force": {"load": "plate"}}}},
+            "place": component("position", "ball", [0.0, 1.0, 0.0]),
+            "back": component("velocity", "ball", [0.0, 1.0, 0.0])
+        }
+    }));
+    let close = |found: f64, exact: f64, part: f64| {
+        assert!((found / exact - 1.0).abs() < part, "{found} {exact}");
+    };
+    close(found[0], depth, 1e-5);
+    close(found[1], stiffness * depth.powf(1.5), 1e-5);
+    close(found[3], speed, 1e-6);
+    // Where it is then says when it came back.
+    close((found[2] - 0.01) / speed, after, 1e-3);
+}
+
 /// rebound of that of approach, and the momentum is kept.
 #[test]
 fn balls_meet_balls() {

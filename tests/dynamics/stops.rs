@@ -150,6 +150,33 @@ fn a_pendulum_enters_its_stop_as_deep_as_its_energy_allows() {
     assert!((found[2] - start).abs() < 1e-7, "{} {start}", found[2]);
 }
 
+/// A mass on a spring with a bolt at its rest that adds its stiffness on one side alone: the period π √(m/k) + π √(m/(k + k')), whatever
+/// the amplitude, and the energy stays.
+#[test]
+fn a_bolt_on_one_side_of_a_spring() {
+    let (mass, soft, bolt) = (2.0_f64, 800.0_f64, 5000.0_f64);
+    let period = std::f64::consts::PI * ((mass / soft).sqrt() + (mass / (soft + bolt)).sqrt());
+    for speed in [0.5, 3.0] {
+        let found = values(&json!({
+            "version": 1, "name": "bolt", "gravity": [0, 0, 0],
+            "bodies": {"block": {"shape": {"box": {"size": [0.1, 0.1, 0.1]}}, "mass": mass, "place": {"at": [1, 0, 0]},
+                                 "velocity": {"linear": [speed, 0, 0]}}},
+            "joints": {"rail": {"prismatic": {"between": ["block", "ground"], "at": [1, 0, 0], "axis": [1, 0, 0]}}},
+            "loads": {
+                "spring": {"spring": {"between": ["block", "ground"], "at": {"a": [0, 0, 0], "b": [0, 0, 0]}, "rest_length": 1, "stiffness": soft}},
+                "bolt": {"stop": {"joint": "rail", "lower": 0, "stiffness": bolt, "width": 1e-5}}
+            },
+            "simulation": {"duration": period, "tolerance": 1e-10},
+            "functions": {
+                "place": {"final": {"position": {"body": "block", "direction": [1, 0, 0]}}},
+                "speed": {"final": {"velocity": {"body": "block", "direction": [1, 0, 0]}}}
+            }
+        }));
+        assert!((found[0] - 1.0).abs() < 1e-6 * speed, "{found:?}");
+        assert!((found[1] / speed - 1.0).abs() < 1e-6, "{found:?}");
+    }
+}
+
 /// Limits beyond a turn: the angle counts from the start of the joint.
 #[test]
 fn limits_count_turns() {
