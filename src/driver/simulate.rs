@@ -5,6 +5,7 @@ use super::flexible_limits::many_steps;
 use super::integration::Integration;
 use crate::functions::Scene;
 use crate::integrate::{IntegrationFailure, Multipliers, Trajectory};
+use crate::model::{Load, LoadKind};
 use crate::problem::Problem;
 use crate::system::Numbering;
 use crate::system::observe::{Observation, Reaction, observe, reactions};
@@ -71,15 +72,20 @@ pub fn simulate_with(
     let before = integration.unlowered;
     let (at, _) = Evaluated::with(integration, problem, x)?;
     let unlowered = integration.unlowered > before;
-    let warning = integration.warning(&at.scene, &at.run);
+    let of_method = integration.warning(&at.scene, &at.run);
     let reason = integration.chosen().map_or("", |(_, reason)| reason).into();
+    let own = Simulation::of(problem, at);
+    let all: Vec<String> = of_method.into_iter().chain(own.lost_energy()).collect();
     Ok(Simulation {
         reason,
-        warning,
+        warning: (!all.is_empty()).then(|| all.join("; ")),
         unlowered,
-        ..Simulation::of(problem, at)
+        ..own
     })
 }
+
+/// A change of the energy that should stay is told above this part of what is exchanged.
+const LOST: f64 = 0.01;
 
 impl Simulation {
     /// A motion with its observations.
@@ -104,6 +110,27 @@ impl Simulation {
             unlowered: false,
             at,
         }
+    }
+
+    /// A warning of a motion that should conserve its energy and does not.
+    fn lost_energy(&self) -> Option<String> {
+        let model = &self.at.scene.model;
+        let touches = |load: &Load<f64>| matches!(load.kind, LoadKind::Contact(_));
+        if !model.conserves_energy() || model.is_fed() || !model.loads.iter().any(touches) {
+            return None;
+        }
+        let first = self.observations.first()?;
+        let exchanged = self.observations.iter().map(|own| {
+            let potential = (own.potential - first.potential).abs();
+            own.kinetic.min(first.kinetic).max(potential)
+        });
+        let (exchanged, drift) = (exchanged.fold(0.0, f64::max), self.energy_drift());
+        let kept = drift <= LOST * exchanged;
+        (!kept).then(|| {
+            format!(
+                "energy should be conserved, and changes by {drift:.3e} J, where {exchanged:.3e} J are exchanged: smaller steps or a smaller tolerance"
+            )
+        })
     }
 
     /// The motion of all bodies.

@@ -176,5 +176,13 @@ fn bad_plates_are_told() {
         &|drag| drag["normal"] = json!([0, 0, 0]),
         &["/loads/lift/drag/normal", "not zero"],
     );
+    told(
+        &|drag| {
+            drag.as_object_mut()
+                .expect("a drag")
+                .remove("normal_coefficient");
+        },
+        &["/loads/lift/drag/normal", "a normal alone has no force"],
+    );
     told(&|drag| drag["faces"] = json!("all"), &["/loads/lift/drag"]);
 }

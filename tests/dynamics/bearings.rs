@@ -145,6 +145,15 @@ fn bad_bearings_are_told() {
         &|friction| friction["motion"] = json!("slide"),
         &[&format!("{own}/radius"), "no radius"],
     );
+    let mut file = rotor(json!({"duration": 0.1}));
+    file["joints"]["left"] =
+        json!({"spherical": {"between": ["rotor", "ground"], "at": [0, 0, -0.3]}});
+    let found = Problem::parse(&file.to_string(), "rotor.json", &[]);
+    let found = found.expect_err("a fault").to_string();
+    assert!(
+        found.contains(own) && found.contains("a \"free\" joint"),
+        "{found}"
+    );
     told(
         &|friction| friction["width"] = json!(0),
         &[&format!("{own}/width")],

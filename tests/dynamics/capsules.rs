@@ -110,6 +110,29 @@ fn rebounds_follow_the_implicit_formula() {
     }
 }
 
+/// A tilted capsule that a guide lets fall on a box without slip comes back with its speed, whatever the friction.
+#[test]
+fn friction_takes_nothing_without_slip() {
+    for mu in [0.0, 1.0] {
+        let found = values(&json!({
+            "version": 1, "name": "drop", "gravity": [0, 0, 0],
+            "bodies": {"rod": {"shape": {"rod": {"length": 0.8, "radius": 0.1}}, "mass": 1, "place": {"at": [0, 0.8, 0]},
+                               "velocity": {"linear": [0, -2, 0]}}},
+            "joints": {"guide": {"prismatic": {"between": ["rod", "ground"], "at": [0, 0.8, 0], "axis": [0, 1, 0]}}},
+            "loads": {"hit": contact(["rod", "ground"], json!({
+                "radius": 0.1, "half": [0.3, 0.2, 0], "surface": {"box": {"size": [2, 0.4, 2], "radius": 0.01}}, "stiffness": 1e5,
+                "dissipation": 0, "width": 1e-2, "friction": {"coefficient": mu, "width": 1e-3}}))},
+            "simulation": {"duration": 0.4, "tolerance": 1e-9},
+            "functions": {
+                "back": {"final": {"velocity": {"body": "rod", "direction": [0, 1, 0]}}},
+                "loss": {"integral": {"slip_power": {"load": "hit"}}}
+            }
+        }));
+        close(found[0], 2.0, 1e-6, "rebound");
+        assert!(found[1].abs() < 1e-9, "{found:?}");
+    }
+}
+
 /// A capsule against a sphere is the sphere against the capsule.
 #[test]
 fn sides_change() {

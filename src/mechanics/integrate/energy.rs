@@ -8,7 +8,7 @@
 //! ```
 //!
 //! where X is the energy exchanged between bodies, gravity and springs. A run of N steps is wrong if
-//! its energy changes by far more than N times that, and by a thousandth of X + K.
+//! its energy changes by far more than N times that, and by a thousandth of X + K; or by half of that, whatever the tolerance.
 //!
 //! Stiff springs and elastic bodies make S large: a displacement within the tolerance is then a
 //! large energy. So after every explicit step, in scenes with loads too, the energy gained is
@@ -29,6 +29,8 @@ use crate::system::{BodyMotion, flexible, loads};
 const PART: f64 = 1e-3;
 /// Factor on the change that follows from the errors of the steps.
 const MARGIN: f64 = 100.0;
+/// Largest part that is allowed whatever the tolerance.
+const MOST: f64 = 0.5;
 /// Round-off relative to the energies.
 const ROUND_OFF: f64 = 1e-10;
 
@@ -354,7 +356,7 @@ impl Ledger {
         let off = MARGIN * error * steps as f64;
         let slack = off * self.stiff.sqrt();
         let follows = off * all + slack * (2.0 * exchanged.sqrt() + slack);
-        let allowed = follows.max(PART * all) + ROUND_OFF * size;
+        let allowed = follows.max(PART * all).min(MOST * all) + ROUND_OFF * size;
         let drift = |look: &Look| (look.energy() - start.energy()).abs();
         // NaN counts as a loss.
         let lost = self.looks.iter().find(|look| {

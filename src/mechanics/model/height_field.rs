@@ -84,7 +84,8 @@ fn weights<S: Scalar>(x: &[f64], at: S) -> ([usize; 2], Weights<S>) {
     if at.re() >= x[last] {
         return beyond(last);
     }
-    let k = x.partition_point(|own| *own <= at.re()) - 1;
+    // A place that is not a number has a height that is none.
+    let k = x.partition_point(|own| *own <= at.re()).max(1) - 1;
     let h = x[k + 1] - x[k];
     let s = (at - x[k]) / h;
     let (s2, s3) = (s * s, s * s * s);
@@ -218,6 +219,12 @@ mod tests {
         };
         let heights: Vec<Vec<f64>> = across.iter().map(row).collect();
         HeightField::new(along, across, &heights)
+    }
+
+    #[test]
+    fn no_place_has_no_height() {
+        assert!(field().at(f64::NAN, 0.3).value.is_nan());
+        assert!(field().at(0.3, f64::NAN).value.is_nan());
     }
 
     #[test]

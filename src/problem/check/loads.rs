@@ -7,7 +7,7 @@ use crate::model::JointKind;
 use crate::placement::GROUND;
 use crate::pointer::{advice, join};
 use crate::quantity::Quantity;
-use crate::schema::joints::Ends;
+use crate::schema::joints::{Ends, Joint};
 use crate::schema::loads::{
     Bushing, Cable, CableLength, Drag, ForceTable, Load, Motion, Stop, TimeFunction,
 };
@@ -213,7 +213,14 @@ impl Checker<'_> {
         self.moving(pointer, &drag.body, &drag.point);
         let place = join(pointer, "normal");
         match &drag.normal {
-            Some(normal) => self.direction(&place, normal),
+            Some(normal) => {
+                self.direction(&place, normal);
+                let own = &drag.normal_coefficient;
+                if own.value == 0.0 && own.variable.is_none() {
+                    let expected = "\"normal_coefficient\" too, as a normal alone has no force";
+                    self.fault(Finding::new(place, "a normal", expected).of_key());
+                }
+            }
             None if drag.normal_coefficient.value != 0.0
                 || drag.normal_coefficient.variable.is_some() =>
             {
@@ -228,6 +235,12 @@ impl Checker<'_> {
     fn bushing(&mut self, pointer: &str, bushing: &Bushing) {
         if let Some(friction) = &bushing.friction {
             let place = join(pointer, "friction");
+            let joint = self.document.joints.get(&bushing.joint);
+            if joint.is_some_and(|joint| !matches!(joint, Joint::Free(_))) {
+                let found = "friction in a joint that bears the force across its axis itself";
+                let expected = "a \"free\" joint, whose bushing bears it";
+                self.fault(Finding::new(&place, found, expected).of_key());
+            }
             match (friction.motion, &friction.radius) {
                 (Motion::Turn, None) => {
                     let finding = Finding::new(place, "no \"radius\"", "the radius of the bearing");

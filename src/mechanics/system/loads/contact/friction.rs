@@ -1,7 +1,7 @@
 //! Friction of a contact by its slip.
 //!
 //! ```text
-//! a = n·v,   v_t = v − n a,   q = v_tᵀ v_t = vᵀv − (2 − nᵀn) a²,   s = √(q + w²)
+//! a = n·v,   v_t = v − n a / nᵀn,   q = v_tᵀ v_t,   s = √(q + w²)
 //! μ(q) = μ_k + (μ_s − μ_k) e,   e = exp(−q / v_s²)
 //! ```
 
@@ -33,7 +33,7 @@ pub(super) struct Slip<S> {
 impl<S: Scalar> Slip<S> {
     pub(super) fn of(friction: &Friction<S>, touch: &Touch<S>, velocity: &Vec3<S>) -> Self {
         let apart = touch.normal.dot(velocity);
-        let tangential = velocity - touch.normal * apart;
+        let tangential = velocity - touch.normal * (apart / touch.square);
         let square = tangential.dot(&tangential) + friction.width * friction.width;
         let mut own = Self {
             tangential,

@@ -20,8 +20,9 @@ use crate::system::loads::pull::{Pulled, pull_point};
 pub(super) struct Touch<S> {
     /// n: −∂δ/∂p.
     pub normal: Vec3<S>,
-    /// nᵀn, which is 1 but for a crowned capsule.
+    /// nᵀn, which is 1 but for a crowned capsule, and whether it is one.
     pub square: S,
+    pub is_crowned: bool,
     pub penetration: S,
     /// Place of contact z in ground axes.
     pub place: Vec3<S>,
@@ -62,6 +63,7 @@ pub(super) fn touch<S: Scalar>(contact: &Contact<S>, at: &Acting<S>) -> Touch<S>
             Touch {
                 normal,
                 square: S::one(),
+                is_crowned: false,
                 penetration: contact.radius - foot.distance(),
                 place: at.a.point() - normal * contact.radius,
                 on: On::Field(foot),
@@ -72,6 +74,7 @@ pub(super) fn touch<S: Scalar>(contact: &Contact<S>, at: &Acting<S>) -> Touch<S>
             Touch {
                 normal,
                 square: found.square(&normal),
+                is_crowned: found.is_crowned(),
                 penetration: found.penetration(contact),
                 place: found.place(at),
                 on: On::Others(found),
@@ -95,6 +98,7 @@ fn on_plane<S: Scalar>(contact: &Contact<S>, normal: &Vec3<S>, at: &Acting<S>) -
     Touch {
         normal,
         square: S::one(),
+        is_crowned: false,
         penetration: contact.radius - distance,
         place: centre - normal * contact.radius,
         on: match wheel {

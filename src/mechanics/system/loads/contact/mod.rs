@@ -174,18 +174,21 @@ pub(super) fn pull<S: Scalar>(
     let by_coefficient = -(force.value * t);
     let by_width = by_size * contact.friction.width / slip.size;
     slip.give(&contact.friction, (by_coefficient, by_width), out);
-    // q = vᵀv − (2 − nᵀn) (n·v)².
-    let shrinks = now.touch.square - 2.0;
-    let by_a = by_size * a * shrinks / slip.size - by_product * b;
-    let by_b = force.value - by_product * a;
+    // With m = nᵀn: v_t·u = v·u − a b / m, q = vᵀv − a² / m.
+    let m = now.touch.square;
+    let by_a = -by_size * a / slip.size / m - by_product * b / m;
+    let by_b = force.value - by_product * a / m;
     let mut by_v = v * (by_size / slip.size) + u * by_product + n * by_a;
     let by_u = v * by_product + n * by_b;
-    let mut by_normal = v * by_a + u * by_b + n * (by_size * a * a / slip.size);
+    let mut by_normal = v * by_a + u * by_b + n * (by_size * a * a / slip.size / (m * m));
+    if now.touch.is_crowned {
+        by_normal += n * (by_product * a * b * 2.0 / (m * m));
+    }
     if let Some(falls) = slip.falls() {
         let by_square = by_coefficient * falls * 2.0;
-        let by_a = by_square * a * shrinks;
+        let by_a = -by_square * a / m;
         by_v += v * by_square + n * by_a;
-        by_normal += v * by_a + n * (by_square * a * a);
+        by_normal += v * by_a + n * (by_square * a * a / (m * m));
     }
     let mut place = pull_velocity(&virtually.a, &now.touch.place, by_u, &mut out.a);
     place += pull_velocity(&virtually.b, &now.touch.place, -by_u, &mut out.b);
@@ -312,7 +315,7 @@ pub(super) fn pull_potential<S: Scalar>(
 }
 
 impl<S: Scalar> State<S> {
-    /// Pulls the cotangents of N and v_t = v − n (n·v) back.
+    /// Pulls the cotangents of N and v_t = v − n (n·v) / nᵀn back.
     fn pull_slip(
         &self,
         contact: &Contact<S>,
@@ -320,11 +323,15 @@ impl<S: Scalar> State<S> {
         (force, by): (S, Vec3<S>),
         out: &mut Pulled<S>,
     ) {
-        let n = self.touch.normal;
-        let along = n.dot(&by);
+        let (n, m, a) = (self.touch.normal, self.touch.square, self.slip.apart);
+        let along = n.dot(&by) / m;
+        let mut normal = -by * (a / m) - self.velocity * along;
+        if self.touch.is_crowned {
+            normal += n * (along * a * 2.0 / m);
+        }
         let cot = Cotangents {
             force,
-            normal: -by * self.slip.apart - self.velocity * along,
+            normal,
             velocity: by - n * along,
             place: Vec3::zeros(),
         };

@@ -186,11 +186,16 @@ impl<S: Scalar> Nearest<S> {
         contact.radius + radius_b(&contact.surface) - self.distance
     }
 
+    /// Whether the capsule is crowned where it touches.
+    pub(super) fn is_crowned(&self) -> bool {
+        self.face.is_none() && self.own.is_some()
+    }
+
     /// nᵀn.
     pub(super) fn square(&self, normal: &Vec3<S>) -> S {
-        match (self.face, self.own) {
-            (None, Some(_)) => normal.dot(normal),
-            _ => S::one(),
+        match self.is_crowned() {
+            true => normal.dot(normal),
+            false => S::one(),
         }
     }
 
