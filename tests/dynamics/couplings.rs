@@ -449,6 +449,14 @@ fn methods_agree_and_energy_is_kept() {
     );
 }
 
+/// A turn about an oblique axis.
+pub const OBLIQUE: [[f64; 3]; 3] = [[0.8, -0.48, 0.36], [0.6, 0.64, -0.48], [0.0, 0.6, 0.8]];
+
+/// A vector that is turned by it.
+pub fn oblique(x: [f64; 3]) -> [f64; 3] {
+    OBLIQUE.map(|row| row.iter().zip(x).map(|(a, b)| a * b).sum::<f64>())
+}
+
 /// A document whose vectors are turned by a rotation matrix, and mirrored in a plane if it is not proper.
 pub fn turned(document: &Value, matrix: &[[f64; 3]; 3]) -> Value {
     let apply = |x: &Value| -> Value {

@@ -202,28 +202,34 @@ fn border(kind: ShellKind) {
     );
 }
 
-/// On a flat plate of area A a pressure p has the force p A n and the moment of that at its middle, turned as the plate.
-#[test]
-fn a_pressure_on_a_flat_plate_is_its_area() {
-    let own = aluminium_plate([3, 2], 0.01);
+/// A flat plate of 1 × 0.25 m with a load.
+fn flat(elements: [usize; 2], load: impl FnOnce(usize) -> DistributedLoad<f64>) -> Case {
+    let own = aluminium_plate(elements, 0.01);
+    let load = load(own.mesh.elements.len());
     let mut frame = Numbers(3).body("plate");
     (frame.mass, frame.inertia) = own.rigid();
     let mut model = alone(frame);
     let still = vec![0.0; own.mesh.coordinates];
     model.add_flexible(0, (&still, &still), Form::Finite(own));
     model.loads.push(Load {
-        name: "wind".into(),
-        kind: LoadKind::Distributed(pressure(6, 40.0)),
+        name: "load".into(),
+        kind: LoadKind::Distributed(load),
     });
     let (q, v) = placement::guess(&model);
-    let case = Case {
+    Case {
         name: "plate".into(),
         numbering: Numbering::new(&model),
         model,
         q,
         v,
         numbers: Numbers(1),
-    };
+    }
+}
+
+/// On a flat plate of area A a pressure p has the force p A n and the moment of that at its middle, turned as the plate.
+#[test]
+fn a_pressure_on_a_flat_plate_is_its_area() {
+    let case = flat([3, 2], |shells| pressure(shells, 40.0));
     let found = forces(&case, &case.model, &case.q, TIME);
     let (force, torque) = bodies::velocities_of(&found[case.numbering.velocity(0)..]);
     let local = case.motions(&case.q, &case.v)[0].rotation.tr_mul(&force);
@@ -238,37 +244,18 @@ fn a_pressure_on_a_flat_plate_is_its_area() {
 #[test]
 fn the_air_on_a_flat_plate() {
     let (c, c_n, area) = (0.3, 1.7, 0.25);
-    let own = aluminium_plate([6, 4], 0.01);
-    let shells = own.mesh.elements.len();
-    let mut frame = Numbers(3).body("plate");
-    (frame.mass, frame.inertia) = own.rigid();
-    let mut model = alone(frame);
-    let still = vec![0.0; own.mesh.coordinates];
-    model.add_flexible(0, (&still, &still), Form::Finite(own));
-    model.loads.push(Load {
-        name: "air".into(),
-        kind: LoadKind::Distributed(DistributedLoad {
-            body: 0,
-            spread: Spread::Air {
-                shells: (0..shells).collect(),
-                air: Air {
-                    coefficient: c,
-                    normal_coefficient: c_n,
-                    width: 1e-6,
-                },
+    let case = flat([6, 4], |shells| DistributedLoad {
+        body: 0,
+        spread: Spread::Air {
+            shells: (0..shells).collect(),
+            air: Air {
+                coefficient: c,
+                normal_coefficient: c_n,
+                width: 1e-6,
             },
-            magnitude: TimeFunction::constant(1.0),
-        }),
+        },
+        magnitude: TimeFunction::constant(1.0),
     });
-    let (q, v) = placement::guess(&model);
-    let case = Case {
-        name: "plate".into(),
-        numbering: Numbering::new(&model),
-        model,
-        q,
-        v,
-        numbers: Numbers(1),
-    };
     let start = case.numbering.velocity(0);
     let turn = case.motions(&case.q, &case.v)[0].rotation;
     let found = |case: &Case, linear: Vec3<f64>, omega: Vec3<f64>| {

@@ -73,6 +73,15 @@ pub fn problem(file: &Value) -> Problem {
     Problem::parse(&file.to_string(), "scene.json", &[]).unwrap_or_else(|faults| panic!("{faults}"))
 }
 
+/// Asserts that a file has faults, and that these say all of the words.
+pub fn faults_say(file: &Value, words: &[&str]) {
+    let found = Problem::parse(&file.to_string(), "scene.json", &[]);
+    let found = found.expect_err("a fault").to_string();
+    for word in words {
+        assert!(found.contains(word), "{found}");
+    }
+}
+
 /// The motion at the start of a file.
 pub fn run(file: &Value) -> Simulation {
     let problem = problem(file);
