@@ -4,6 +4,7 @@ use crate::program::{
     TREBUCHET, alone, end_of, ended, files, mpirun, no_orphans, optimum, over, processes, start,
 };
 use flexbody::mpi::Session;
+use std::path::Path;
 use std::process::Command;
 use std::time::{Duration, Instant};
 
@@ -47,9 +48,9 @@ fn a_killed_rank_ends_all_and_the_run_resumes() {
         "/optimiser={\"iterations\": 15}",
     ];
     let with = |how: &[&'static str]| [&arguments[..], how].concat();
-    let begun = Instant::now();
     let whole = over(3, at.path(), &with(&["--output", "whole"]));
-    let duration = begun.elapsed();
+    let all = logged(&at.path().join("whole"));
+    assert!(all > 100, "{all} evaluations");
     let expected = optimum(&at.path().join("whole"));
     let mut in_the_midst = 0;
     let kills = std::env::var("FLEXBODY_KILLS").ok();
@@ -59,9 +60,10 @@ fn a_killed_rank_ends_all_and_the_run_resumes() {
         let words = [&arguments[..], &["--output", &output]].concat();
         let mut run = start(3, at.path(), &words);
         let ranks = ranks_of(&output, 3);
+        let directory = at.path().join(&output);
         // Multiples of the golden ratio are spread without a pattern.
         let moment = (f64::from(k) * 0.618_033_988_749_895).fract();
-        std::thread::sleep(duration.mul_f64(moment));
+        wait_for(&output, &directory, (moment * all as f64) as usize);
         let killed = ranks[k as usize % 3];
         let was_running = processes(&output).contains(&killed);
         send("-9", killed);
@@ -72,7 +74,6 @@ fn a_killed_rank_ends_all_and_the_run_resumes() {
             in_the_midst += 1;
             assert!(code.is_none_or(|code| code != 0), "kill {k}: {code:?}");
         }
-        let directory = at.path().join(&output);
         let has_log = files_if_any(&directory).any(|name| name.starts_with("evaluations"));
         let how = if has_log { "--resume" } else { "--output" };
         let ranks = [2, 4, 1][k as usize % 3];
@@ -87,7 +88,27 @@ fn a_killed_rank_ends_all_and_the_run_resumes() {
     assert!(2 * in_the_midst > kills, "{in_the_midst} of {kills}");
 }
 
-fn files_if_any(directory: &std::path::Path) -> impl Iterator<Item = String> {
+/// How many evaluations the logs in a directory have. Files may go while it is read.
+fn logged(directory: &Path) -> usize {
+    let entries = std::fs::read_dir(directory).into_iter().flatten().flatten();
+    let logs = entries.filter(|entry| {
+        entry
+            .file_name()
+            .to_string_lossy()
+            .starts_with("evaluations")
+    });
+    let texts = logs.filter_map(|entry| std::fs::read_to_string(entry.path()).ok());
+    texts.map(|text| text.lines().count()).sum()
+}
+
+/// Waits until a run has logged so many evaluations, or has ended. Time would not do: how fast a run is depends on what else runs.
+fn wait_for(output: &str, directory: &Path, evaluations: usize) {
+    while logged(directory) < evaluations && !processes(output).is_empty() {
+        std::thread::sleep(Duration::from_millis(2));
+    }
+}
+
+fn files_if_any(directory: &Path) -> impl Iterator<Item = String> {
     let all = match directory.is_dir() {
         true => files(directory),
         false => Default::default(),
