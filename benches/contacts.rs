@@ -1,6 +1,6 @@
-//! Contacts: what the points of a foot cost a step, and spheres in a box with a contact for every pair.
+//! Contacts: what shapes on a plane and on hills and the points of a foot cost a step, and spheres in a box with a contact for every pair.
 //!
-//! `cargo bench --bench contacts` prints both tables. Times are processor times of the thread on Linux, and wall times elsewhere.
+//! `cargo bench --bench contacts` prints the tables. Times are processor times of the thread on Linux, and wall times elsewhere.
 //!
 //! The leg is that of `problems/jumping_leg.json` with a foot on an ankle, whose sole has the points, in 400 equal steps of DOP853
 //! from its crouch. The spheres of 0.1 m in diameter and 0.1 kg have random velocities up to 1 m/s in a box without lid, and the error
@@ -121,7 +121,72 @@ fn spheres(count: usize, tolerance: f64) -> Problem {
     }))
 }
 
+/// What a shape on a plane or on hills costs: a body that rolls and slips for 0.5 s in 500 equal steps of DOP853.
+fn rolling(shape: Value, on_hills: bool) -> Problem {
+    let places = |count: usize| (0..count).map(|k| 0.25 * k as f64 - 1.0);
+    let height = |u: f64, v: f64| 0.02 * (3.0 * u).sin() * (2.0 * v).cos();
+    let heights: Vec<Vec<f64>> = places(21)
+        .map(|v| places(41).map(|u| height(u, v)).collect())
+        .collect();
+    let [along, across] = [41, 21].map(|count| places(count).collect::<Vec<f64>>());
+    let surface = match on_hills {
+        true => {
+            json!({"height_field": {"normal": [0, 1, 0], "direction": [1, 0, 0], "along": along, "across": across,
+                                        "heights": heights}})
+        }
+        false => json!({"plane": {"normal": [0, 1, 0]}}),
+    };
+    let mut contact = json!({"between": ["body", "ground"], "at": {"a": [0, 0, 0], "b": [0, 0, 0]}, "surface": surface,
+                             "stiffness": 2e4, "dissipation": 0.5, "width": 2e-3, "friction": {"coefficient": 0.5, "width": 0.05}});
+    let own = contact.as_object_mut().expect("an object");
+    own.extend(shape.as_object().expect("a shape").clone());
+    parsed(&json!({
+        "version": 1, "name": "rolling", "gravity": [0, -9.81, 0],
+        "bodies": {"body": {"shape": {"box": {"size": [0.3, 0.2, 0.1]}}, "mass": 2, "place": {"at": [0, 0.23, 0]},
+                            "velocity": {"linear": [1, 0, 0.2], "angular": [0.2, 0.3, -3]}}},
+        "loads": {"ground": {"contact": contact}},
+        "simulation": {"duration": 0.5, "steps": 500, "method": "dop853"},
+        "functions": {"x": {"final": {"position": {"body": "body", "direction": [1, 0, 0]}}}},
+        "variables": {"mass": {"path": "/bodies/body/mass", "lower": 0.01}}
+    }))
+}
+
 fn main() -> Result<(), SimulationError> {
+    println!(
+        "a body that rolls, 500 steps of dop853:\nshape         plane: us/step  gradient/run  hills: us/step  gradient/run"
+    );
+    for (name, shape) in [
+        ("sphere", json!({"radius": 0.2})),
+        (
+            "wheel",
+            json!({"radius": 0.05, "wheel": {"axis": [0.1, 0.2, 1], "radius": 0.15}}),
+        ),
+        (
+            "capsule of 2",
+            json!({"radius": 0.2, "half": [0.05, 0, 0.2], "spheres": 2}),
+        ),
+        (
+            "capsule of 5",
+            json!({"radius": 0.2, "half": [0.05, 0, 0.2], "spheres": 5}),
+        ),
+    ] {
+        print!("{name:12}");
+        for on_hills in [false, true] {
+            let problem = rolling(shape.clone(), on_hills);
+            let x = problem.start();
+            let (seconds, at) = fastest(5, || Analysis::new(&problem).at(&x));
+            let at = at?;
+            let (gradient, found) = fastest(5, || at.gradients(&[0]));
+            found?;
+            print!(
+                " {:14.1} {:13.2}",
+                1e6 * seconds / 500.0,
+                gradient / seconds
+            );
+        }
+        println!();
+    }
+    println!();
     println!("leg with a foot, 400 steps of dop853:\n         points  us/step  gradient/run");
     for (what, across) in [("planar", 0.0), ("spatial", 0.04)] {
         for points in [0, 4, 10, 20] {

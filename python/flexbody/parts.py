@@ -3383,16 +3383,18 @@ class loads(Kinds):
         between: Sequence[str],
         at: Ends,
         surface: Surface2,
-        stiffness: Real,
-        width: Real,
         radius: Real | None = None,
         wheel: Wheel | None = None,
         half: Vector | None = None,
+        spheres: Integer | None = None,
+        materials: Sequence[str] | None = None,
+        stiffness: Real | None = None,
         dissipation: Real | None = None,
+        width: Real | None = None,
         exponent: Real | None = None,
         friction: ContactFriction | None = None,
     ) -> Load:
-        """A contact of a sphere or point of a body with a plane, sphere or capsule, with friction.
+        """A contact of a sphere, point, wheel or capsule of a body with a surface, with friction.
 
         Parameters
         ----------
@@ -3404,23 +3406,31 @@ class loads(Kinds):
             `point_pair(…)`: One point on each body.
         surface : one of `surface2s`
             Surface of the second body.
-        stiffness : number above 0 [N/m]
-            Stiffness k: force per penetration, to the power of the exponent if there is one.
-        width : number above 0 [m]
-            Width w of the onset, from w/2 before touching to w/2 behind it. A smaller width is sharper and needs
-            finer steps.
         radius : number at least 0 [m], optional
             Radius of the sphere, default 0: a point.
         wheel : `wheel(…)`, optional
-            Of a wheel on a plane: the circle of the centres, about `at`, of the spheres that are its tyre.
+            Of a wheel on a plane or height field: the circle of the centres, about `at`, of the spheres that are its
+            tyre.
         half : numbers, shape (3,) [m], optional
             Of a capsule: from its centre `at` to the centre of the sphere at one end, in ground axes at the start and
-            fixed in the body. On a plane both ends touch; spheres, capsules and boxes are touched where the axis is
-            nearest.
+            fixed in the body. Planes and height fields are touched by spheres along its axis; spheres, capsules and
+            boxes where the axis is nearest.
+        spheres : integer from 2 to 1000, optional
+            How many equal spheres along the axis of a capsule touch a plane or height field; n of them have 2/n of
+            the stiffness each. Default 2 on a plane, its ends; on a height field so many that they are no further
+            apart than the radius.
+        materials : list of 2 texts, optional
+            Names of the materials of the first body and of the second at the contact, in place of the stiffness: that
+            of Hertz, for spheres on planes and spheres.
+        stiffness : number above 0 [N/m], optional
+            Stiffness k: force per penetration, to the power of the exponent if there is one.
         dissipation : number at least 0 [s/m], optional
             Dissipation c: at small speeds v of impact the rebound has 1 − c v of it; default 0.
+        width : number above 0 [m], optional
+            Width w of the onset, from w/2 before touching to w/2 behind it. A smaller width is sharper and needs
+            finer steps. Needed with a stiffness; with materials the default is 1e-5 of the radius of Hertz.
         exponent : number at least 1, optional
-            Exponent n of the penetration, default 1. Two spheres have 1.5 by Hertz.
+            Exponent n of the penetration, default 1, or 1.5 of Hertz with materials.
         friction : `contact_friction(…)`, optional
             Friction, default none.
         """

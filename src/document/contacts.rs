@@ -5,11 +5,6 @@ use crate::quantity::{Quantity, Vector, nothing};
 use schemars::JsonSchema;
 use serde::Deserialize;
 
-/// The exponent 1.
-pub(super) fn linear() -> f64 {
-    1.0
-}
-
 /// A contact of a sphere, point, wheel or capsule of the first body with a surface of the second: the normal force of a stop, and friction
 /// μ N v_t / √(v_t² + w²) against the tangential velocity v_t.
 #[derive(Clone, Debug, Deserialize, JsonSchema)]
@@ -23,32 +18,44 @@ pub struct Contact {
     #[serde(default = "nothing")]
     #[schemars(extend("unit" = "m", "minimum" = 0))]
     pub radius: Quantity,
-    /// Of a wheel on a plane: the circle of the centres, about `at`, of the spheres that are its tyre.
+    /// Of a wheel on a plane or height field: the circle of the centres, about `at`, of the spheres that are its tyre.
     pub wheel: Option<Wheel>,
-    /// Of a capsule: from its centre `at` to the centre of the sphere at one end, in ground axes at the start and fixed in the body. On a
-    /// plane both ends touch; spheres, capsules and boxes are touched where the axis is nearest.
+    /// Of a capsule: from its centre `at` to the centre of the sphere at one end, in ground axes at the start and fixed in the body.
+    /// Planes and height fields are touched by spheres along its axis; spheres, capsules and boxes where the axis is nearest.
     #[schemars(extend("unit" = "m"))]
     pub half: Option<Vector>,
+    /// How many equal spheres along the axis of a capsule touch a plane or height field; n of them have 2/n of the stiffness each. Default
+    /// 2 on a plane, its ends; on a height field so many that they are no further apart than the radius.
+    #[schemars(extend(
+        "unit" = "1",
+        "minimum" = 2,
+        "maximum" = 1000,
+        "design_variable" = "a number of spheres is a count, not a physical number"
+    ))]
+    pub spheres: Option<usize>,
     /// Surface of the second body.
     pub surface: Surface,
+    /// Names of the materials of the first body and of the second at the contact, in place of the stiffness: that of Hertz, for spheres on
+    /// planes and spheres.
+    pub materials: Option<[String; 2]>,
     /// Stiffness k: force per penetration, to the power of the exponent if there is one.
     #[schemars(extend("unit" = "N/m", "exclusiveMinimum" = 0))]
-    pub stiffness: Quantity,
+    pub stiffness: Option<Quantity>,
     /// Dissipation c: at small speeds v of impact the rebound has 1 − c v of it; default 0.
     #[serde(default = "nothing")]
     #[schemars(extend("unit" = "s/m", "minimum" = 0))]
     pub dissipation: Quantity,
     /// Width w of the onset, from w/2 before touching to w/2 behind it. A smaller width is sharper and needs finer steps.
+    /// Needed with a stiffness; with materials the default is 1e-5 of the radius of Hertz.
     #[schemars(extend("unit" = "m", "exclusiveMinimum" = 0))]
-    pub width: Quantity,
-    /// Exponent n of the penetration, default 1. Two spheres have 1.5 by Hertz.
-    #[serde(default = "linear")]
+    pub width: Option<Quantity>,
+    /// Exponent n of the penetration, default 1, or 1.5 of Hertz with materials.
     #[schemars(extend(
         "unit" = "1",
         "minimum" = 1,
         "design_variable" = "the exponent says which law the numbers of a contact have"
     ))]
-    pub exponent: f64,
+    pub exponent: Option<f64>,
     /// Friction, default none.
     pub friction: Option<ContactFriction>,
 }

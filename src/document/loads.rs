@@ -1,6 +1,6 @@
 //! Loads in a file.
 
-use super::contacts::{Contact, linear};
+use super::contacts::Contact;
 use super::controllers::Controller;
 use super::drives::Sliding;
 use super::joints::Ends;
@@ -11,6 +11,11 @@ use super::mechanics::Point;
 use crate::quantity::{Quantity, Vector, nothing};
 use schemars::JsonSchema;
 use serde::Deserialize;
+
+/// The exponent 1.
+fn linear() -> f64 {
+    1.0
+}
 
 /// A force, torque, spring, damper, bushing, friction, drag, stop, contact, cable or controller.
 #[derive(Clone, Debug, Deserialize, JsonSchema)]
@@ -35,7 +40,7 @@ pub enum Load {
     Drag(Drag),
     /// Stops of a joint or of the distance of two points, which press back smoothly.
     Stop(Stop),
-    /// A contact of a sphere or point of a body with a plane, sphere or capsule, with friction.
+    /// A contact of a sphere, point, wheel or capsule of a body with a surface, with friction.
     Contact(Box<Contact>),
     /// A cable over frictionless pulleys, or a winch. It pulls and never presses.
     Cable(Cable),

@@ -125,6 +125,11 @@ impl<'a, S: Scalar> Assembly<'a, S> {
         assembly
     }
 
+    /// What is written.
+    pub fn document(&self) -> &'a Document {
+        self.document
+    }
+
     /// Pose of body `index`, after the bodies relative to which it is placed.
     fn place(&self, index: usize) -> Pose<S> {
         let (name, body) = self.document.bodies.get_index(index).expect(CHECKED);

@@ -1,5 +1,6 @@
 //! The widths over which loads are smooth.
 
+use crate::contacts::default_width;
 use crate::quantity::Quantity;
 use crate::schema::Document;
 use crate::schema::loads::Load;
@@ -11,8 +12,10 @@ pub(super) fn halve(document: &mut Document) -> bool {
         let widths: Vec<&mut Quantity> = match load {
             Load::Stop(own) => vec![&mut own.width],
             Load::Contact(own) => {
+                let width = default_width(own);
                 let friction = own.friction.as_mut().map(|friction| &mut friction.width);
-                std::iter::once(&mut own.width).chain(friction).collect()
+                let width = own.width.get_or_insert(width);
+                std::iter::once(width).chain(friction).collect()
             }
             Load::Cable(own) => vec![&mut own.width],
             Load::Friction(own) => vec![&mut own.width],

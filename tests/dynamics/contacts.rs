@@ -2,7 +2,7 @@
 //! and random drops of which none is lost.
 
 use super::stops::rebound;
-use crate::reference::documents::{methods, problem as parsed, values, vary};
+use crate::reference::documents::{faults_say, methods, problem as parsed, values, vary};
 use crate::reference::gradients::gradients_are_exact;
 use crate::reference::models::Numbers;
 use flexbody_driver::simulate;
@@ -60,7 +60,6 @@ fn balls_rebound_by_the_implicit_formula() {
     }
 }
 
-/// Two balls of masses m, M with the velocities v, 0 along the line of their centres: the velocity of separation is the
 /// A sphere that hits a plane by Hertz's law, exponent 3/2, without loss: the deepest place (5 m v²/4 k)^⅖, the largest force k δ^{3/2}, and
 /// the rebound after 2.9432 δ/v (Hertz 1882; Johnson, *Contact Mechanics*, section 11.4).
 #[test]
@@ -98,6 +97,99 @@ fn a_hertzian_impact() {
     close((found[2] - 0.01) / speed, after, 1e-3);
 }
 
+/// Materials in place of a stiffness: Hertz's, of two spheres and of a sphere on a plane, with the derivatives by the moduli and radii.
+#[test]
+fn materials_give_the_stiffness_of_hertz() {
+    let file = |law: Value, surface: Value, simulation: &Value| {
+        let mut contact = json!({"between": ["ball", "ground"], "at": {"a": [0, 0, 0], "b": [0, -0.02, 0]}, "radius": 0.01,
+                                 "surface": surface, "dissipation": 0.1});
+        let own = contact.as_object_mut().expect("an object");
+        own.extend(law.as_object().expect("a law").clone());
+        json!({
+            "version": 1, "name": "hertz", "gravity": [0, 0, 0],
+            "materials": {"steel": {"young": 2.1e11, "poisson": 0.3}, "rubber": {"young": 5e6, "poisson": 0.49}},
+            "bodies": {"ball": {"shape": {"sphere": {"radius": 0.01}}, "mass": 0.03, "place": {"at": [0.002, 0.0109, 0]},
+                                "velocity": {"linear": [0, -2, 0]}}},
+            "loads": {"plate": {"contact": contact}},
+            "simulation": simulation,
+            "functions": {"back": component("velocity", "ball", [0.0, 1.0, 0.0]), "side": component("velocity", "ball", [1.0, 0.0, 0.0]),
+                          "push": {"integral": {"contact_force": {"load": "plate"}}}}
+        })
+    };
+    let modulus = 1.0 / ((1.0 - 0.09) / 2.1e11 + (1.0 - 0.49 * 0.49) / 5e6);
+    let materials = json!({"materials": ["steel", "rubber"]});
+    let plane = json!({"plane": {"normal": [0, 1, 0]}});
+    let sphere = json!({"sphere": {"radius": 0.02}});
+    let simulation = json!({"duration": 0.02, "tolerance": 1e-10});
+    for (surface, radius) in [(plane, 0.01), (sphere.clone(), 0.02 / 3.0)] {
+        let mut by_name = file(materials.clone(), surface.clone(), &simulation);
+        let law = json!({"stiffness": 4.0 / 3.0 * modulus * f64::sqrt(radius), "exponent": 1.5, "width": 1e-5 * radius});
+        let mut by_number = file(law, surface, &simulation);
+        for file in [&mut by_name, &mut by_number] {
+            if radius == 0.01 {
+                file["loads"]["plate"]["contact"]["at"]["b"] = json!([0, 0, 0]);
+            }
+        }
+        for (a, b) in values(&by_name).iter().zip(values(&by_number)) {
+            assert!((a - b).abs() <= 1e-9 * b.abs().max(0.1), "{a} {b}");
+        }
+    }
+    for simulation in methods(0.004, 400) {
+        let mut law = materials.clone();
+        law["width"] = json!(1e-3);
+        let mut file = file(law, sphere.clone(), &simulation);
+        let own = "/loads/plate/contact";
+        vary(
+            &mut file,
+            &[
+                "/materials/steel/young".into(),
+                "/materials/rubber/young".into(),
+                format!("{own}/radius"),
+                format!("{own}/surface/sphere/radius"),
+            ],
+        );
+        let functions = file["functions"].as_object_mut().expect("functions");
+        functions.remove("push");
+        let ratio = "/materials/rubber/poisson";
+        file["variables"]["ratio"] = json!({"path": ratio, "lower": 0.3, "upper": 0.5});
+        gradients_are_exact(&parsed(&file), &simulation);
+    }
+    let told = |law: Value, surface: &Value, words: &[&str]| {
+        faults_say(&file(law, surface.clone(), &simulation), words);
+    };
+    let own = "/loads/plate/contact";
+    told(
+        json!({"width": 1e-4}),
+        &sphere,
+        &[own, "no \"stiffness\"", "\"materials\" give"],
+    );
+    told(json!({"stiffness": 1e4}), &sphere, &[own, "no \"width\""]);
+    told(
+        json!({"materials": ["steel", "ruber"]}),
+        &sphere,
+        &["/loads/plate/contact/materials/1", "ruber", "rubber"],
+    );
+    told(
+        json!({"materials": ["steel", "rubber"], "stiffness": 1e4}),
+        &sphere,
+        &["/loads/plate/contact/stiffness", "one of them"],
+    );
+    told(
+        json!({"materials": ["steel", "rubber"], "exponent": 1}),
+        &sphere,
+        &["/loads/plate/contact/exponent", "1.5, that of Hertz"],
+    );
+    told(
+        materials.clone(),
+        &json!({"box": {"size": [1, 1, 1]}}),
+        &[
+            "/loads/plate/contact/materials",
+            "no sphere on a plane or sphere",
+        ],
+    );
+}
+
+/// Two balls of masses m, M with the velocities v, 0 along the line of their centres: the velocity of separation is the
 /// rebound of that of approach, and the momentum is kept.
 #[test]
 fn balls_meet_balls() {
@@ -504,6 +596,55 @@ fn a_turning_rod_meets_a_thin_post() {
         let felt = (momentum / impulse - 1.0).abs() < 0.01;
         assert!(felt || tolerance > 5e-5, "{angle} {tolerance}: {found:?}");
     }
+}
+
+/// Equal steps in which a ball goes through a sphere, or touches and is on its way back at their end, fail by every method; those that
+/// follow the impact do not.
+#[test]
+fn equal_steps_do_not_pass_through() {
+    let (mut failed, mut all, mut warned) = (0, 0, 0);
+    for steps in (4..60).chain([100, 200, 400]) {
+        for dissipation in [0.0, 0.1] {
+            let methods = [
+                json!("dop853"),
+                json!({"radau": {"stages": 3}}),
+                json!({"bdf": {"order": 2}}),
+                json!({"generalised_alpha": {"radius": 0.8}}),
+            ];
+            for method in methods {
+                let file = json!({
+                    "version": 1, "name": "balls", "gravity": [0, 0, 0],
+                    "bodies": {"ball": point([0.0, 1.0, 0.0], [0.0, -4.0, 0.0])},
+                    "loads": {"post": {"contact": {"between": ["ball", "ground"], "at": {"a": [0, 0, 0], "b": [0, 0.1, 0]}, "radius": 0.1,
+                                                   "surface": {"sphere": {"radius": 0.1}}, "stiffness": 2e5, "width": 1e-3,
+                                                   "dissipation": dissipation}}},
+                    "simulation": {"duration": 0.5, "steps": steps, "method": method},
+                    "functions": {"place": component("position", "ball", [0.0, 1.0, 0.0]), "energy": {"final": {"energy": "total"}}}
+                });
+                let problem = parsed(&file);
+                all += 1;
+                match simulate(&problem, &problem.start()) {
+                    Ok(found) => {
+                        let place = found.at.function(0).value;
+                        assert!(place > 0.1, "{steps} steps by {method} go through: {place}");
+                        // 16 J before.
+                        let rises = found.at.function(1).value > 16.5;
+                        assert!(found.warning.is_some() || !rises, "{steps} {method}");
+                        warned += usize::from(rises);
+                    }
+                    Err(failure) => {
+                        failed += 1;
+                        assert!(steps < 60, "{steps} {method}: {failure}");
+                    }
+                }
+            }
+        }
+    }
+    println!("{failed} of {all} fail, {warned} have a warning");
+    assert!(
+        failed > 10 && failed < all && warned > 0,
+        "{failed} {all} {warned}"
+    );
 }
 
 /// What is at the axis of a capsule at the start has no normal there.

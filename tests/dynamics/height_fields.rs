@@ -152,13 +152,39 @@ fn gradients_by_every_method() {
         file["variables"]["place"] =
             json!({"path": format!("{own}/at/b/0"), "lower": -0.1, "upper": 0.1});
         gradients_are_exact(&parsed(&file), &simulation);
+        let wheel = json!({"wheel": {"axis": [0.3, 0.5, 1], "radius": 0.15}});
+        let mut wheel = shaped(file.clone(), 0.05, &wheel);
+        wheel["loads"]["ground"]["contact"]["friction"]["width"] = json!(0.2);
+        let radius = format!("{own}/wheel/radius");
+        wheel["variables"]["wheel"] = json!({"path": radius, "lower": 0.1, "upper": 0.2});
+        let axis = format!("{own}/wheel/axis/1");
+        wheel["variables"]["axis"] = json!({"path": axis, "lower": 0.1, "upper": 1});
+        gradients_are_exact(&parsed(&wheel), &json!(["wheel", simulation]));
+        let mut capsule = shaped(
+            file,
+            0.05,
+            &json!({"half": [0.1, 0.03, 0.05], "spheres": 3}),
+        );
+        let half = format!("{own}/half/1");
+        capsule["variables"]["half"] = json!({"path": half, "lower": 0.0, "upper": 0.1});
+        gradients_are_exact(&parsed(&capsule), &json!(["capsule", simulation]));
     }
 }
 
 #[test]
 fn the_same_in_other_descriptions() {
     let file = carried(json!({"duration": 0.4, "tolerance": 1e-10}));
-    let reference = values(&file);
+    described(&file, None);
+    let wheel = json!({"wheel": {"axis": [0.3, 0.5, 1], "radius": 0.15}});
+    described(&shaped(file.clone(), 0.05, &wheel), Some("wheel/radius"));
+    let capsule = json!({"half": [0.1, 0.03, 0.05]});
+    described(&shaped(file, 0.05, &capsule), Some("half"));
+}
+
+/// Asserts that a file has the same values turned, in another order, without reductions, in other units and welded; `length` is the
+/// place of the length that its shape has.
+fn described(file: &Value, length: Option<&str>) {
+    let reference = values(file);
     let agree = |found: &[f64], what: &str| {
         for (a, b) in found.iter().zip(&reference) {
             assert!(
@@ -167,7 +193,11 @@ fn the_same_in_other_descriptions() {
             );
         }
     };
-    let mut other = turned(&file, &OBLIQUE);
+    let mut other = turned(file, &OBLIQUE);
+    if length == Some("half") {
+        let half = &mut other["loads"]["ground"]["contact"]["half"];
+        *half = json!(oblique([0.1, 0.03, 0.05]));
+    }
     for (body, velocity, spin) in [
         ("ball", [1.0, -0.5, 0.3], [3.0, -2.0, 1.0]),
         ("plate", [0.0, 1.0, 0.0], [0.4, 0.3, -0.5]),
@@ -180,12 +210,11 @@ fn the_same_in_other_descriptions() {
     own["surface"]["height_field"]["normal"] = json!(oblique([0.0, 2.0, 0.0]));
     own["surface"]["height_field"]["direction"] = json!(oblique([3.0, 0.4, 0.0]));
     agree(&values(&other), "turned");
-    agree(&values(&reversed(&file, &["bodies"])), "in another order");
-    agree(&unlowered_values(&file), "without reductions");
+    agree(&values(&reversed(file, &["bodies"])), "in another order");
+    agree(&unlowered_values(file), "without reductions");
     // Millimetres and tonnes; feet and pounds.
-    let own = "/loads/ground/contact";
-    let of = |key: &str| &*format!("{own}/{key}").leak();
-    let places = [
+    let of = |key: &str| &*format!("/loads/ground/contact/{key}").leak();
+    let mut places = vec![
         ("/gravity", 1, 0),
         ("/bodies/ball/shape", 1, 0),
         ("/bodies/ball/mass", 0, 1),
@@ -204,8 +233,9 @@ fn the_same_in_other_descriptions() {
         (of("surface/height_field/heights"), 1, 0),
         ("/functions/depth/ks/rho", -1, 0),
     ];
+    places.extend(length.map(|own| (of(own), 1, 0)));
     for (metre, kilogram) in [(1e3, 1e-3), (1.0 / 0.3048, 1.0 / 0.45359237)] {
-        let found = values(&in_units(&file, (metre, kilogram), &places));
+        let found = values(&in_units(file, (metre, kilogram), &places));
         let newton = metre * kilogram;
         let joule = newton * metre;
         let scales = [metre, metre, metre, 1.0, metre, newton, joule, joule];
@@ -216,7 +246,7 @@ fn the_same_in_other_descriptions() {
             .collect();
         agree(&found, "in other units");
     }
-    let mut file = file;
+    let mut file = file.clone();
     file["bodies"]["case"] = json!({
         "mass": 0.1, "inertia": {"xx": 0.001, "yy": 0.001, "zz": 0.001},
         "place": {"at": [0.1, 0.05, 0.2], "turn": {"axis": [1, 2, 0.4], "angle": 0.9}},
@@ -254,11 +284,158 @@ fn bad_fields_are_told() {
         &[&heights, "hollow", "touches at one place"],
     );
     told(
-        &|contact| contact["half"] = json!([1, 0, 0]),
-        &["/loads/ground/contact/half", "spheres along its axis"],
+        &|contact| contact["wheel"] = json!({"axis": [0, 0, 1], "radius": 2}),
+        &[&heights, "hollow", "sphere or wheel"],
     );
     told(
-        &|contact| contact["wheel"] = json!({"axis": [0, 0, 1], "radius": 0.1}),
-        &["/loads/ground/contact/wheel", "a plane"],
+        &|contact| contact["spheres"] = json!(3),
+        &["/loads/ground/contact/spheres", "no capsule"],
     );
+    told(
+        &|contact| {
+            contact["half"] = json!([0.1, 0, 0]);
+            contact["spheres"] = json!(1);
+        },
+        &["/loads/ground/contact/spheres", "2"],
+    );
+    // A wheel that lies on flat ground touches everywhere.
+    told(
+        &|contact| {
+            let flat = field(&[-1.0, 1.0], &[-1.0, 1.0], |_, _| 0.0);
+            contact["surface"] = flat;
+            contact["wheel"] = json!({"axis": [0, 1, 0], "radius": 0.1});
+        },
+        &["/loads/ground/contact/wheel/axis", "a wheel that stands"],
+    );
+}
+
+/// Puts a shape, and a radius, in place of the sphere of a file.
+fn shaped(mut file: Value, radius: f64, shape: &Value) -> Value {
+    let own = file["loads"]["ground"]["contact"]
+        .as_object_mut()
+        .expect("a contact");
+    own.extend(shape.as_object().expect("an object").clone());
+    own.insert("radius".into(), json!(radius));
+    file
+}
+
+/// Capsules and leaning wheels on heights of a plane have the motions that they have on the plane.
+#[test]
+fn capsules_and_wheels_on_a_plane_field() {
+    let simulation = || json!({"duration": 0.6, "tolerance": 1e-10});
+    let heights = field(&[-1.0, 0.1, 0.3], &[-0.2, 0.0, 0.15], |u, v| {
+        0.02 + 0.1 * u - 0.2 * v
+    });
+    let plane = json!({"plane": {"normal": [-0.1, 1, -0.2]}});
+    for shape in [
+        json!({"half": [0.2, 0.05, 0.1], "spheres": 2}),
+        json!({"half": [0.2, 0.05, 0.1], "spheres": 5}),
+        json!({"wheel": {"axis": [0.4, 0.3, 1], "radius": 0.08}}),
+        json!({"wheel": {"axis": [1, 0.5, -0.3], "radius": 0.08}}),
+    ] {
+        let on = |surface: &Value, height: f64| {
+            let file = ball(surface.clone(), [0.0, height, 0.0], simulation());
+            values(&shaped(file, 0.03, &shape))
+        };
+        let exact = on(&plane, 0.02);
+        assert!(exact[5] > 2.0, "{exact:?}");
+        for (a, b) in on(&heights, 0.0).iter().zip(&exact) {
+            assert!((a - b).abs() < 1e-6 * b.abs().max(0.1), "{shape}: {a} {b}");
+        }
+    }
+}
+
+/// An upright wheel on a road is a sphere of its whole radius; the tyre may be sharp.
+#[test]
+fn an_upright_wheel_on_a_road_is_a_sphere() {
+    let along = grid(-1.0, 4.0, 26);
+    let mut road = field(&along, &[0.0], |u, _| 0.1 * (2.0 * u + 0.3).sin());
+    road["height_field"]["direction"] = json!([1, 0, 0]);
+    let mut file = ball(
+        road,
+        [0.0, 0.0, 0.0],
+        json!({"duration": 0.8, "tolerance": 1e-11}),
+    );
+    file["bodies"]["ball"]["velocity"] = json!({"linear": [3, -0.5, 0], "angular": [0, 0, -5]});
+    let exact = values(&shaped(file.clone(), 0.2, &json!({})));
+    assert!(exact[0] > 1.5 && exact[5] > 5.0, "{exact:?}");
+    for radius in [0.2, 0.15] {
+        let shape = json!({"wheel": {"axis": [0, 0, 1], "radius": radius}});
+        let found = values(&shaped(file.clone(), 0.2 - radius, &shape));
+        for (a, b) in found.iter().zip(&exact) {
+            close(*a, *b, 1e-7, "a sphere");
+        }
+    }
+}
+
+/// A capsule on heights is as many spheres as are no further apart than its radius; two that are given are its ends.
+#[test]
+fn a_capsule_is_spheres() {
+    let hills = || {
+        field(&grid(-0.5, 1.0, 9), &grid(-0.4, 0.5, 6), |u, v| {
+            0.05 * (5.0 * u).sin() * (4.0 * v + 0.3).cos()
+        })
+    };
+    let file = ball(
+        hills(),
+        [0.0, 0.0, 0.0],
+        json!({"duration": 0.5, "tolerance": 1e-10}),
+    );
+    for (spheres, radius) in [(Some(2), 0.05), (None, 0.05), (None, 0.101)] {
+        let half = [0.2, 0.05, 0.1];
+        let mut one = shaped(file.clone(), radius, &json!({"half": half}));
+        if let Some(count) = spheres {
+            one["loads"]["ground"]["contact"]["spheres"] = json!(count);
+        }
+        // The capsule is 0.458 m long between the centres.
+        let count = spheres.unwrap_or(if radius == 0.05 { 11 } else { 6 });
+        let mut many = shaped(file.clone(), radius, &json!({}));
+        let contact = many["loads"]["ground"].take();
+        for k in 0..count {
+            let part = 1.0 - 2.0 * f64::from(k) / f64::from(count - 1);
+            let name = if k == 0 {
+                "ground".into()
+            } else {
+                format!("sphere {k}")
+            };
+            many["loads"][&name] = contact.clone();
+            // The spheres have the stiffness of two.
+            many["loads"][&name]["contact"]["stiffness"] = json!(2e4 * 2.0 / f64::from(count));
+            many["loads"][&name]["contact"]["at"]["a"] = json!(half.map(|x| part * x));
+        }
+        let (found, exact) = (values(&one), values(&many));
+        for k in [0, 1, 2, 3, 7] {
+            close(found[k], exact[k], 1e-6, "spheres");
+        }
+        assert!(found[5] > 1.0, "{found:?}");
+    }
+}
+
+/// A leaning wheel without loss that bounces over hills keeps its energy.
+#[test]
+fn a_wheel_on_hills_keeps_energy() {
+    let hills = field(&grid(-1.5, 3.0, 31), &grid(-1.5, 1.5, 21), |u, v| {
+        0.08 * (3.0 * u).sin() * (2.0 * v + 0.3).cos()
+    });
+    let mut file = ball(
+        hills,
+        [0.0, 0.0, 0.0],
+        json!({"duration": 1.5, "tolerance": 1e-10}),
+    );
+    file["loads"]["ground"]["contact"]["friction"]["coefficient"] = json!(0);
+    file["loads"]["ground"]["contact"]["dissipation"] = json!(0);
+    file["functions"]["first"] = json!({"value": {"at": 0, "of": {"energy": "total"}}});
+    for tyre in [0.0, 0.04] {
+        let shape = json!({"wheel": {"axis": [0.3, 0.4, 1], "radius": 0.12}});
+        let off = |tolerance: f64| {
+            let mut file = shaped(file.clone(), tyre, &shape);
+            file["simulation"]["tolerance"] = json!(tolerance);
+            let found = values(&file);
+            assert!(found[5] > 5.0, "{found:?}");
+            found[7] / found[8] - 1.0
+        };
+        let off = [1e-8, 1e-9, 1e-10, 1e-11].map(off);
+        println!("a tyre of {tyre} m: energy changes by {off:?}");
+        assert!(off[3].abs() < 1e-6, "{off:?}");
+    }
 }

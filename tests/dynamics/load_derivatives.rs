@@ -360,14 +360,25 @@ fn contacts(body_b: Option<usize>, numbers: &mut Numbers) -> Vec<(JointKind, Loa
                     });
                     with(Shape::Capsule {
                         half: numbers.vector() * 3.0,
+                        spheres: 2,
                     });
                 }
-                Surface::Field { .. } => {}
+                Surface::Field { .. } => {
+                    with(Shape::Wheel {
+                        axis: numbers.vector().normalize(),
+                        radius: 1.5,
+                    });
+                    with(Shape::Capsule {
+                        half: numbers.vector() * 3.0,
+                        spheres: 4,
+                    });
+                }
                 // Nearest at an end, and between. One without radius has no sides.
                 _ if contact.radius > 0.0 => {
                     for long in [0.01, 1.0] {
                         with(Shape::Capsule {
                             half: numbers.vector() * long,
+                            spheres: 2,
                         });
                     }
                 }

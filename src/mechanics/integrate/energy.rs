@@ -198,7 +198,11 @@ impl Supply {
             false => Err(IntegrationFailure::EnergyGained {
                 time,
                 step,
-                gained,
+                gained: if gained.is_nan() {
+                    f64::INFINITY
+                } else {
+                    gained
+                },
                 available: available + self.supplied,
             }),
         }

@@ -8,11 +8,14 @@
 //! ```
 //!
 //! It errs by h⁶/46080 times the sixth derivative: by 2e-5 of the length of what turns by 2 rad in the step. A step that begins
-//! apart, ends so or grazes, and touches more between is repeated, and then ends where it is deepest.
+//! apart, ends so or grazes, and touches more between is repeated, and then ends where it is deepest. Of equal steps, which cannot be
+//! repeated, one fails that begins apart and is past the deepest place at its end, as it went through the contact or back out of it, and
+//! one that touches and at whose end the normal points back, as it went past the middle.
 //!
 //! The third derivative of a profile jumps at its points, and each of its values acts near one of them alone. So derivatives in
 //! the values need steps that are no longer than from one point to the next.
 
+use super::settings::Spacing;
 use crate::math::Scalar;
 use crate::math::rotation;
 use crate::model::{Joint, Model, TimeFunction};
@@ -62,6 +65,8 @@ pub struct Touches {
     before: End,
     after: End,
     cams: Vec<Cam>,
+    /// Whether steps are equal, so that what one passes over is a failure.
+    equal: bool,
 }
 
 /// A cam: its joint, the body whose coordinate it follows, and the points of its profile.
@@ -90,13 +95,14 @@ impl Cam {
 }
 
 impl Touches {
-    /// Watches the stops and contacts of a model, and its cams if steps are `chosen`, from its start (q, v, v̇); `None` if it
+    /// Watches the stops and contacts of a model, and its cams if steps follow a tolerance, from its start (q, v, v̇); `None` if it
     /// has none.
     pub fn open<S: Scalar>(
         model: &Model<S>,
         numbering: &Numbering,
-        (start, chosen): ([&[S]; 3], bool),
+        (start, spacing): ([&[S]; 3], &Spacing),
     ) -> Option<Self> {
+        let chosen = matches!(spacing, Spacing::Tolerance(_));
         let cams = if chosen { Cam::all(model) } else { Vec::new() };
         if cams.is_empty() && !model.loads.iter().any(|load| may_touch(&load.kind)) {
             return None;
@@ -107,6 +113,7 @@ impl Touches {
             before,
             after: End::default(),
             cams,
+            equal: spacing.is_equal(),
         })
     }
 
@@ -178,11 +185,17 @@ impl Touches {
         };
         let all = before.iter().zip(&middle).zip(&after).enumerate();
         let all = all.filter_map(|(k, ((now, middle), after))| {
-            if !may_meet([now, middle, after], h) {
+            let ends_apart = after.penetration < -GRAZES * after.onset;
+            let least = if self.equal && now.normal.dot(&after.normal) < 0.0 {
+                now.onset
+            } else if (ends_apart || self.equal) && may_meet([now, middle, after], h) {
+                now.onset.max(after.penetration)
+            } else {
                 return None;
-            }
+            };
             let first = before.iter().position(|own| own.load == now.load)?;
-            self.deepest(model, &mut motions, (k - first, now, after.penetration), h)
+            let wanted = (now.load, k - first, least);
+            self.deepest(model, &mut motions, wanted, h)
         });
         all.min_by(|a, b| a.part.total_cmp(&b.part))
     }
@@ -226,15 +239,14 @@ impl Touches {
         }
     }
 
-    /// Where gap k of its load is deepest, if it touches there and more than at the end of the step.
+    /// Where gap k of a load is deepest, if it is deeper there than `least`.
     fn deepest<S: Scalar>(
         &self,
         model: &Model<S>,
         motions: &mut [BodyMotion<S>],
-        (k, gap, after): (usize, &Gap, f64),
+        (load, k, least): (usize, usize, f64),
         h: f64,
     ) -> Option<Missed> {
-        let load = gap.load;
         let bodies = model.loads[load].kind.bodies(&model.joints);
         let mut found = Vec::new();
         let mut depth = |part: f64| {
@@ -260,7 +272,7 @@ impl Touches {
         }
         let part = 0.5 * (low + high);
         let over = Over::Contact(load);
-        (depth(part) > gap.onset.max(after)).then_some(Missed { over, part })
+        (depth(part) > least).then_some(Missed { over, part })
     }
 }
 
@@ -317,12 +329,11 @@ const GRAZES: f64 = 2.0;
 /// The speed between two looks is at most this times the largest of the three.
 const SPEEDS_UP: f64 = 1.5;
 
-/// Whether a step that begins apart and ends so, or only grazes, may touch between: the gap is known at three places, and no place is
+/// Whether a step that begins apart may touch before its end: the gap is known at three places, and no place is
 /// further than a quarter of the step from one.
 fn may_meet(gaps: [&Gap; 3], h: f64) -> bool {
     let largest = |of: &dyn Fn(&Gap) -> f64| gaps.iter().map(|gap| of(gap)).fold(0.0, f64::max);
-    let [before, _, after] = gaps;
-    let apart = before.penetration < before.onset && after.penetration < -GRAZES * after.onset;
+    let apart = gaps[0].penetration < gaps[0].onset;
     let reach = 0.25 * h * SPEEDS_UP * largest(&|gap| gap.speed);
     let near = |gap: &&Gap| gap.penetration + reach >= gap.onset;
     apart && gaps.iter().any(near)

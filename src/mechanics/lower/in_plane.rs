@@ -334,7 +334,9 @@ impl Plane {
                         Shape::Wheel { axis, .. } => {
                             examiner.vanishes(n.cross(axis).as_slice(), 1.0, what);
                         }
-                        Shape::Capsule { half } => examiner.zero(n.dot(half), largest(half), what),
+                        Shape::Capsule { half, .. } => {
+                            examiner.zero(n.dot(half), largest(half), what)
+                        }
                     }
                 }
                 // Flexible bodies that carry it, and stiffnesses, have no plane but by chance, which is not looked for.

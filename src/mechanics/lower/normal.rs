@@ -148,7 +148,7 @@ fn vectors(model: &Model<f64>) -> (Vec<Vec3<f64>>, Vec<Vec3<f64>>) {
                 match &own.shape {
                     Shape::Sphere => {}
                     Shape::Wheel { axis, .. } => across.push(of_a * axis),
-                    Shape::Capsule { half } => inside.push(of_a * half),
+                    Shape::Capsule { half, .. } => inside.push(of_a * half),
                 }
             }
             LoadKind::Force {

@@ -12,8 +12,8 @@
 //! N is the [`NormalLaw`], v_t the tangential velocity of A against B there and w the width of the friction
 //! (Vigué et al. 2017); μ falls from μ_s to μ_k as slip sets in (Stribeck; Bo & Pavelescu 1982). The place of contact divides the line
 //! between the centres by the radii; on planes and heights, it is the point of the sphere that is deepest. A wheel is a torus: spheres
-//! whose centres lie on a circle about an axis of A, of which the lowest touches the plane. A capsule touches a plane by both ends
-//! and other surfaces where its axis is nearest. Within a box d is negative: that to the nearest face. Formulas and derivatives are
+//! whose centres lie on a circle about an axis of A, of which the lowest touches. A capsule touches planes and heights by n spheres
+//! along its axis, each with 2/n of the stiffness, and other surfaces where its axis is nearest. Within a box d is negative: that to the nearest face. Formulas and derivatives are
 //! in `system::loads::contact`.
 
 use super::height_field::HeightField;
@@ -61,6 +61,8 @@ pub enum Shape<S> {
     Capsule {
         /// From its centre to one end, in axes of body A \[m\].
         half: Vec3<S>,
+        /// How many spheres along it touch planes and heights, two or more.
+        spheres: usize,
     },
 }
 
@@ -120,7 +122,7 @@ pub enum Surface<S> {
     },
 }
 
-parameters!(enum Shape { Sphere, Wheel {; axis, radius }, Capsule {; half } });
+parameters!(enum Shape { Sphere, Wheel {; axis, radius }, Capsule { spheres; half } });
 
 parameters!(struct Stribeck {; coefficient, speed });
 
@@ -148,7 +150,7 @@ impl<S> Shape<S> {
     pub fn direction(&self) -> Option<&Vec3<S>> {
         match self {
             Self::Sphere => None,
-            Self::Wheel { axis: own, .. } | Self::Capsule { half: own } => Some(own),
+            Self::Wheel { axis: own, .. } | Self::Capsule { half: own, .. } => Some(own),
         }
     }
 
@@ -156,7 +158,7 @@ impl<S> Shape<S> {
     pub fn direction_mut(&mut self) -> Option<&mut Vec3<S>> {
         match self {
             Self::Sphere => None,
-            Self::Wheel { axis: own, .. } | Self::Capsule { half: own } => Some(own),
+            Self::Wheel { axis: own, .. } | Self::Capsule { half: own, .. } => Some(own),
         }
     }
 }
@@ -188,10 +190,22 @@ impl<S> Surface<S> {
 }
 
 impl<S> Contact<S> {
-    /// Half of a capsule that touches by both ends.
-    pub fn ends(&self) -> Option<&Vec3<S>> {
+    /// What each place of contact has of the stiffness: the spheres of a capsule together have that of two.
+    pub fn share(&self) -> f64 {
+        match (&self.shape, self.spheres()) {
+            (Shape::Capsule { spheres, .. }, Some(_)) => 2.0 / *spheres as f64,
+            _ => 1.0,
+        }
+    }
+
+    /// Half of a capsule that touches by spheres along its axis, and the parts of it at which they are: 1 and −1 for the ends.
+    pub fn spheres(&self) -> Option<(&Vec3<S>, impl Iterator<Item = f64> + use<S>)> {
         match (&self.shape, &self.surface) {
-            (Shape::Capsule { half }, Surface::Plane { .. }) => Some(half),
+            (Shape::Capsule { half, spheres }, Surface::Plane { .. } | Surface::Field { .. }) => {
+                let intervals = (spheres - 1) as f64;
+                let part = move |k: usize| 1.0 - 2.0 * k as f64 / intervals;
+                Some((half, (0..*spheres).map(part)))
+            }
             _ => None,
         }
     }

@@ -87,6 +87,34 @@ impl<S: Scalar> Model<S> {
         driven || self.loads.iter().any(feeds)
     }
 
+    /// Whether every load keeps energy or takes it, or is judged as what feeds the motion. Bushings with damping may be of any kind.
+    pub fn is_passive(&self) -> bool {
+        let takes = |load: &Load<S>| match &load.kind {
+            LoadKind::Spring {
+                damping, tables, ..
+            }
+            | LoadKind::TorsionSpring {
+                damping, tables, ..
+            } => damping.re() >= 0.0 && tables[1].is_none(),
+            LoadKind::Damping {
+                coefficient, table, ..
+            } => coefficient.re() >= 0.0 && table.is_none(),
+            LoadKind::BallDamping { coefficient, .. } => coefficient.re() >= 0.0,
+            LoadKind::Bushing { damping, .. } => damping.iter().all(|x| x.re() == 0.0),
+            LoadKind::Friction { .. }
+            | LoadKind::Drag { .. }
+            | LoadKind::JointStop { .. }
+            | LoadKind::DistanceStop { .. }
+            | LoadKind::Contact(_)
+            | LoadKind::Cable(_)
+            | LoadKind::Force { .. }
+            | LoadKind::Torque { .. }
+            | LoadKind::Controller(_) => true,
+            LoadKind::Distributed(own) => own.spread.supplies(),
+        };
+        self.loads.iter().all(takes)
+    }
+
     /// Whether energy is conserved: only springs and gravity do work.
     pub fn conserves_energy(&self) -> bool {
         let conserves = |load: &Load<S>| match &load.kind {

@@ -33,7 +33,7 @@ fn pair<S: Scalar>(own: &Contact<S>) -> Option<[(usize, f64); 2]> {
     let around = match &own.shape {
         Shape::Sphere => 0.0,
         Shape::Wheel { radius, .. } => radius.re(),
-        Shape::Capsule { half } => size(half),
+        Shape::Capsule { half, .. } => size(half),
     };
     let of_a = size(&own.point_a) + own.radius.re() + around + 0.5 * own.law.width.re();
     let of_b = size(&own.point_b) + radius.re() + more;

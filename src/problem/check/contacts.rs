@@ -1,6 +1,7 @@
 //! Contacts.
 
 use super::Checker;
+use crate::contacts::{HERTZ, MOST, spheres};
 use crate::finding::Finding;
 use crate::math::Vec3;
 use crate::model::HeightField as Field;
@@ -49,10 +50,13 @@ impl Checker<'_> {
                 }
             }
             Surface::HeightField(own) => {
-                self.heights(&join(&place, "height_field"), own, contact.radius.value);
+                let around = contact.wheel.as_ref().map_or(0.0, |own| own.radius.value);
+                let radius = around + contact.radius.value;
+                self.heights(&join(&place, "height_field"), own, radius);
             }
         }
         self.shape(pointer, contact);
+        self.stiffness_of(pointer, contact);
         if let Some(friction) = &contact.friction
             && let Some(own) = &friction.stribeck
             && own.coefficient.value < friction.coefficient.value
@@ -72,12 +76,21 @@ impl Checker<'_> {
 
     /// Checks what touches the surface of a contact.
     fn shape(&mut self, pointer: &str, contact: &Contact) {
+        let has_spheres = matches!(
+            contact.surface,
+            Surface::Plane { .. } | Surface::HeightField(_)
+        );
+        if contact.spheres.is_some() && (contact.half.is_none() || !has_spheres) {
+            let found = "spheres of what is no capsule on a plane or height field";
+            let expected = "\"half\" and such a surface";
+            self.fault(Finding::new(join(pointer, "spheres"), found, expected).of_key());
+        }
         if let Some(wheel) = &contact.wheel {
             let wheels = join(pointer, "wheel");
             self.direction(&join(&wheels, "axis"), &wheel.axis);
-            if !matches!(contact.surface, Surface::Plane { .. }) {
-                let found = "a wheel on another surface than a plane";
-                let expected = "a plane; spheres and points touch all surfaces";
+            if !has_spheres {
+                let found = "a wheel on another surface than a plane or height field";
+                let expected = "one of them; spheres and points touch all surfaces";
                 self.fault(Finding::new(wheels, found, expected).of_key());
             }
         }
@@ -88,16 +101,55 @@ impl Checker<'_> {
                 let found = "a capsule that is a wheel";
                 self.fault(Finding::new(&place, found, "\"half\" or \"wheel\"").of_key());
             }
+            if contact.spheres.is_none() && spheres(contact, half) > MOST as usize {
+                let expected = "\"spheres\": how many touch, as more than 100 would be no further apart than the radius";
+                self.fault(Finding::new(&place, "a long thin capsule", expected));
+            }
             if contact.radius.value == 0.0 && !matches!(contact.surface, Surface::Plane { .. }) {
                 let expected = "a radius, as its sides touch";
                 let radius = join(pointer, "radius");
                 self.fault(Finding::new(radius, "a capsule without one", expected));
             }
-            if let Surface::HeightField(_) = contact.surface {
-                let found = "a capsule on a height field";
-                let expected = "spheres along its axis, a contact each";
-                self.fault(Finding::new(place, found, expected).of_key());
+        }
+    }
+
+    /// Checks that a contact has a stiffness and a width, or materials that give them.
+    fn stiffness_of(&mut self, pointer: &str, contact: &Contact) {
+        let Some(names) = &contact.materials else {
+            let given = [("stiffness", &contact.stiffness), ("width", &contact.width)];
+            for (key, _) in given.iter().filter(|(_, own)| own.is_none()) {
+                let found = format!("no \"{key}\"");
+                let finding = Finding::new(pointer, found, format!("\"{key}\": a number"));
+                let hint = "\"materials\" give those of spheres on planes and spheres".to_owned();
+                self.fault(finding.hint(Some(hint)));
             }
+            return;
+        };
+        let list = join(pointer, "materials");
+        for (k, name) in names.iter().enumerate() {
+            self.material(&join(&list, k), name);
+        }
+        if contact.stiffness.is_some() {
+            let place = join(pointer, "stiffness");
+            let found = "a stiffness beside \"materials\"";
+            self.fault(Finding::new(place, found, "one of them").of_key());
+        }
+        if let Some(exponent) = contact.exponent.filter(|own| *own != HERTZ) {
+            let found = format!("{exponent} beside \"materials\"");
+            let expected = "1.5, that of Hertz, or a stiffness in place of materials";
+            self.fault(Finding::new(join(pointer, "exponent"), found, expected));
+        }
+        let radii = match &contact.surface {
+            Surface::Plane { .. } => Some([contact.radius.value, 1.0]),
+            Surface::Sphere { radius } => Some([contact.radius.value, radius.value]),
+            Surface::Capsule { .. } | Surface::Box { .. } | Surface::HeightField(_) => None,
+        };
+        let is_sphere = contact.wheel.is_none() && contact.half.is_none();
+        if !is_sphere || radii.is_none_or(|radii| radii.contains(&0.0)) {
+            let found = "materials of what is no sphere on a plane or sphere";
+            let expected =
+                "\"stiffness\" and \"width\": Hertz's formula is for spheres with a radius";
+            self.fault(Finding::new(list, found, expected).of_key());
         }
     }
 
@@ -152,7 +204,7 @@ impl Checker<'_> {
         if radius >= tightest {
             let found = format!("heights with a hollow of the radius {tightest:.4} m");
             let expected = format!(
-                "hollows wider than the sphere, whose radius is {radius} m, as it touches at one place"
+                "hollows wider than the sphere or wheel, whose radius is {radius} m, as it touches at one place"
             );
             self.fault(Finding::new(list, found, expected));
         }

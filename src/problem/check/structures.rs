@@ -89,17 +89,21 @@ impl Checker<'_> {
         self.structure_at(pointer, name, structure);
     }
 
+    /// Checks the name of a material that is written at `place`.
+    pub(super) fn material(&mut self, place: &str, name: &str) {
+        let materials = &self.document.materials;
+        if materials.contains_key(name) || self.damage.holds("materials", name) {
+            return;
+        }
+        let hint = advice(name, "materials", materials.keys().map(String::as_str));
+        let found = format!("\"{name}\"");
+        self.fault(Finding::new(place, found, "the name of a material").hint(hint));
+    }
+
     /// Checks a structure that is written at `pointer`.
     pub(super) fn structure_at(&mut self, pointer: String, name: &str, structure: &Structure) {
         let before = self.findings.len();
-        let materials = &self.document.materials;
-        let material = &structure.material;
-        if !materials.contains_key(material) && !self.damage.holds("materials", material) {
-            let hint = advice(material, "materials", materials.keys().map(String::as_str));
-            let found = format!("\"{material}\"");
-            let finding = Finding::new(join(&pointer, "material"), found, "the name of a material");
-            self.fault(finding.hint(hint));
-        }
+        self.material(&join(&pointer, "material"), &structure.material);
         if structure.mesh.is_unread() {
             self.sets.unknown = true;
             return;

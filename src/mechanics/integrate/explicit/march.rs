@@ -139,7 +139,7 @@ pub fn march<S: SolveScalar>(
     };
     let mut touches = {
         let start = [&from.q[..], &from.v, &from.a];
-        Touches::open(model, numbering, (start, !given && !equal))
+        Touches::open(model, numbering, (start, &settings.spacing))
     };
     while let Some(width) = controller.next(run.grid.reached()) {
         let begin = run.grid.reached();

@@ -194,7 +194,7 @@ fn march_until<S: SolveScalar>(
         numbering,
         (
             [&past.from.q, &past.from.v, &past.from.vdot],
-            matches!(settings.spacing, Spacing::Tolerance(_)),
+            &settings.spacing,
         ),
     );
     while let Some(width) = controller.next(run.grid.reached()) {

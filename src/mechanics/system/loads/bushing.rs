@@ -170,7 +170,7 @@ pub(super) fn pull<S: Scalar>(
         a: JointSide::fixed(&motions[0], at.a.frame),
         b: JointSide::fixed(&motions[1], at.b.frame),
         counted: None,
-        end: 0.0,
+        part: 0.0,
     };
     let minus = |all: Six<S>| all.map(|x| -x);
     let (by_x, by_rate) = (transposed(k, &by_reaction), transposed(c, &by_reaction));

@@ -61,7 +61,7 @@ impl<'a, S: Scalar> Running<'a, S> {
                 a,
                 b,
                 counted: None,
-                end: 0.0,
+                part: 0.0,
             };
             let now = apart(&at);
             (at, now)

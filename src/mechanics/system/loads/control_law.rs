@@ -80,7 +80,7 @@ fn acting<'a, S: Scalar>(
         a: JointSide::fixed(&motions[body_a], frame_a),
         b: JointSide::fixed(body_b.map_or(ground, |body| &motions[body]), frame_b),
         counted: None,
-        end: 0.0,
+        part: 0.0,
     };
     match coordinate {
         Written::Joint {

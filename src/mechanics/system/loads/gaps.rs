@@ -1,7 +1,7 @@
 //! How near the stops, contacts and slack cables of a scene are, for the control of steps.
 
 use super::{cable, contact, for_loads, stop};
-use crate::math::Scalar;
+use crate::math::{Scalar, Vec3};
 use crate::model::{LoadKind, Model};
 use crate::system::bodies::BodyMotion;
 
@@ -16,6 +16,8 @@ pub struct Gap {
     pub speed: f64,
     /// Penetration at which the force sets in \[m or rad\].
     pub onset: f64,
+    /// The normal of a contact, in ground axes; zero of others.
+    pub normal: Vec3<f64>,
 }
 
 /// Part of the width of an onset before the limit at which the force is felt: 0.7 % of the force at the limit.
@@ -35,20 +37,23 @@ pub fn gaps<S: Scalar>(
 ) {
     out.clear();
     for_loads(model, motions, of.clone(), |load, kind, at| {
-        let mut add = |penetration: f64, speed: f64, width: S| {
+        let mut add = |penetration: f64, speed: f64, width: S, normal: Vec3<f64>| {
             out.push(Gap {
                 load,
                 penetration,
                 speed,
                 onset: -FELT * width.re(),
+                normal,
             });
         };
         if let Some(stop) = stop::of(kind) {
-            stop.each_gap(at, |depth, speed| add(depth, speed, stop.width()));
+            let none = Vec3::zeros();
+            stop.each_gap(at, |depth, speed| add(depth, speed, stop.width(), none));
         }
         if let LoadKind::Contact(own) = kind {
-            let depth = contact::penetration(own, at).re();
-            add(depth, contact::speed(own, at), own.law.width);
+            let (depth, normal) = contact::place(own, at);
+            let normal = normal.map(|x| x.re());
+            add(depth.re(), contact::speed(own, at), own.law.width, normal);
         }
     });
     for load in of {
@@ -59,6 +64,7 @@ pub fn gaps<S: Scalar>(
                 penetration,
                 speed,
                 onset: -FELT * own.law.width.re(),
+                normal: Vec3::zeros(),
             });
         }
     }

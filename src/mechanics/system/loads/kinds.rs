@@ -47,6 +47,10 @@ pub(super) fn pulled<S: Scalar>(
     time: S,
     psi: &Virtual<S>,
 ) -> Pulled<S> {
+    if let LoadKind::Contact(own) = kind {
+        let now = contact::state(own, at);
+        return contact::pulled((own, now.as_ref()), at, psi);
+    }
     let mut out = Pulled::zero();
     let motions = moving(at, psi);
     let virtually = with_motions(at, &motions);
@@ -59,7 +63,6 @@ pub(super) fn pulled<S: Scalar>(
         return out;
     }
     match kind {
-        LoadKind::Contact(contact) => contact::pull(contact, at, &virtually, &mut out),
         LoadKind::Bushing {
             stiffness,
             damping,

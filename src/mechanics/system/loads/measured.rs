@@ -157,7 +157,7 @@ fn pull_others(at: &InMotion<f64>, measure: LoadMeasure, weight: f64, out: &mut 
         given = true;
         let pulled = pull(kind, acting, measure.part, weight);
         give_to_states(&pulled, acting, at.numbering, (&mut out.y, &mut out.v));
-        give_to_parameters(kind, &pulled, (i, acting.end, 0.0), (out.model, &mut 0.0));
+        give_to_parameters(kind, &pulled, (i, acting.part, 0.0), (out.model, &mut 0.0));
     });
 }
 

@@ -52,11 +52,11 @@ pub(super) struct Acting<'a, S> {
     b: JointSide<'a, S>,
     /// The angle of the joint with all its turns, if they are counted \[rad\].
     counted: Option<f64>,
-    /// The end of the capsule which a contact has, 1 or −1, or 0.
-    end: f64,
+    /// The part of a capsule's half at which the sphere is that touches, or 0.
+    part: f64,
 }
 
-/// Calls `visit(number of the load, its kind, its bodies)` for every load on one or two bodies; twice for a contact of both ends of a
+/// Calls `visit(number of the load, its kind, its bodies)` for every load on one or two bodies; once for each sphere of a
 /// capsule.
 fn for_each_load<S: Scalar>(
     model: &Model<S>,
@@ -99,7 +99,7 @@ fn for_loads<S: Scalar>(
         a: JointSide::fixed(&motions[body_a], frame_a),
         b: JointSide::fixed(body_b.map_or(&ground, |body| &motions[body]), frame_b),
         counted: None,
-        end: 0.0,
+        part: 0.0,
     };
     let on_joint = |joint: usize| {
         let joint = &model.joints[joint];
@@ -130,10 +130,10 @@ fn for_loads<S: Scalar>(
                 let to = |point: Vec3<S>| {
                     acting((own.body_a, at(&point)), (own.body_b, at(&own.point_b)))
                 };
-                if let Some(half) = own.ends() {
-                    for end in [1.0, -1.0] {
-                        let acting = to(own.point_a + half * S::from(end));
-                        visit(i, &load.kind, &Acting { end, ..acting });
+                if let Some((half, parts)) = own.spheres() {
+                    for part in parts {
+                        let acting = to(own.point_a + half * S::from(part));
+                        visit(i, &load.kind, &Acting { part, ..acting });
                     }
                     continue;
                 }
@@ -281,10 +281,10 @@ pub fn emit_jacobian<S: Scalar>(here: &InMotion<S>, to: &LoadEntries<S>, emit: &
     let numbering = here.numbering;
     for_each_load(here.model, here.motions, |_, kind, at| {
         let blocks = blocks(kind);
-        // The places of a contact that does not touch stay in the pattern of the matrix.
-        let acts = match kind {
-            LoadKind::Contact(own) => contact::touches(own, at),
-            _ => true,
+        // The places of a contact that does not press stay in the pattern of the matrix.
+        let touching = match kind {
+            LoadKind::Contact(own) => Some((own, contact::state(own, at))),
+            _ => None,
         };
         // One row of the Jacobian for each unit virtual velocity of either body.
         for side in 0..2 {
@@ -298,9 +298,9 @@ pub fn emit_jacobian<S: Scalar>(here: &InMotion<S>, to: &LoadEntries<S>, emit: &
                 let mut psi = [(Vec3::zeros(), Vec3::zeros()); 2];
                 let (linear, angular) = &mut psi[side];
                 [linear, angular][component / 3][component % 3] = S::one();
-                let pulled = match acts {
-                    true => kinds::pulled(kind, at, here.time, &psi),
-                    false => Pulled::zero(),
+                let pulled = match &touching {
+                    Some((own, now)) => contact::pulled((own, now.as_ref()), at, &psi),
+                    None => kinds::pulled(kind, at, here.time, &psi),
                 };
                 let row = to.row + numbering.velocity(body) + component;
                 for (body, by) in at.bodies.into_iter().zip([&pulled.a, &pulled.b]) {
@@ -348,7 +348,7 @@ pub fn pull_back(here: &InMotion<f64>, psi: &[f64], out: &mut LoadCotangent) {
         });
         let pulled = kinds::pulled(kind, at, time, &psi);
         give_to_states(&pulled, at, numbering, (&mut out.y, &mut out.v));
-        give_to_parameters(kind, &pulled, (i, at.end, time), (out.model, out.time));
+        give_to_parameters(kind, &pulled, (i, at.part, time), (out.model, out.time));
     });
     distributed::pull_back(here, psi, out);
     controller::pull_back(here, psi, out);
@@ -450,7 +450,7 @@ pub fn pull_potential(here: &InMotion<f64>, weight: f64, out: &mut LoadCotangent
             return;
         };
         give_to_states(&pulled, at, here.numbering, (&mut out.y, &mut None));
-        give_to_parameters(kind, &pulled, (i, at.end, 0.0), (out.model, &mut 0.0));
+        give_to_parameters(kind, &pulled, (i, at.part, 0.0), (out.model, &mut 0.0));
     });
     cable::pull_potential(here, weight, out);
 }

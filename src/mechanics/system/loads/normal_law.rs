@@ -13,6 +13,7 @@
 
 use crate::math::Scalar;
 use crate::model::NormalLaw;
+use std::ops::Mul;
 
 /// Width of the ramp β. A free rebound has b > 0, and nearly always above half of this width.
 const NO_PULL: f64 = 0.1;
@@ -89,6 +90,20 @@ impl<S: Scalar> NormalForce<S> {
             by_penetration: S::zero(),
             by_rate: S::zero(),
             by_law: [S::zero(); 3],
+        }
+    }
+}
+
+/// A share of a force and of its derivatives.
+impl<S: Scalar> Mul<f64> for NormalForce<S> {
+    type Output = Self;
+
+    fn mul(self, share: f64) -> Self {
+        Self {
+            value: self.value * share,
+            by_penetration: self.by_penetration * share,
+            by_rate: self.by_rate * share,
+            by_law: self.by_law.map(|by| by * share),
         }
     }
 }

@@ -77,7 +77,7 @@ pub(super) fn with_motions<'a, S: Scalar>(
         a: JointSide::fixed(&motions[0], at.a.frame),
         b: JointSide::fixed(&motions[1], at.b.frame),
         counted: at.counted,
-        end: at.end,
+        part: at.part,
     }
 }
 

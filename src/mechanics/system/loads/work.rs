@@ -47,7 +47,7 @@ pub fn pull_power(here: &InMotion<f64>, load: usize, weight: f64, out: &mut Join
         give_to_parameters(
             kind,
             &pulled,
-            (i, at.end, here.time),
+            (i, at.part, here.time),
             (out.model, &mut by_time),
         );
         let all = at.bodies.into_iter().zip(forces(kind, at, here.time));
@@ -84,7 +84,7 @@ fn at_joint<S: Scalar, T>(
         a,
         b,
         counted: None,
-        end: 0.0,
+        part: 0.0,
     })
 }
 

@@ -10,16 +10,20 @@
 //! Newton's method on the distance finds u and v from the place below the centre; its last two steps, which are in the scalar, bring the
 //! derivatives.
 
-use super::cotangent::{Cotangent, RADIUS_A, pull_direction};
+use super::cotangent::pull_direction;
 use crate::math::{Scalar, Vec3, scalar::length};
 use crate::model::height_field::Height;
 use crate::model::{Contact, HeightField};
 use crate::system::loads::Acting;
-use crate::system::loads::pull::{Pulled, pull_point};
+use crate::system::loads::pull::Pulled;
 
 /// Most steps of Newton's method; most halvings of one.
 const STEPS: usize = 60;
 const HALVINGS: usize = 30;
+/// A fall of the square of the distance, relative to it, that is not looked for.
+const UNSEEN: f64 = 1e-13;
+/// A step that is so much smaller than the one before is quadratically convergent.
+const CONVERGED: f64 = 1e-4;
 
 /// The nearest point of a surface.
 pub(super) struct Foot<S> {
@@ -73,9 +77,15 @@ fn nearest(field: &HeightField, r: &Vec3<f64>) -> [f64; 2] {
     };
     let mut at = [r.x, r.y];
     let mut now = square(at);
+    let mut last = 0.0;
     for _ in 0..STEPS {
         let (mut by, [a, b, c]) = step(field, r, at);
-        if !(a > 0.0 && a * c > b * b) {
+        let is_convex = a > 0.0 && a * c > b * b;
+        let [x, y] = by;
+        if is_convex && a * x * x + 2.0 * b * x * y + c * y * y <= UNSEEN * now {
+            break;
+        }
+        if !is_convex {
             // Where the distance is not convex, the steepest way down.
             let height = field.at(at[0], at[1]);
             let away = r - Vec3::new(at[0], at[1], height.value);
@@ -97,18 +107,22 @@ fn nearest(field: &HeightField, r: &Vec3<f64>) -> [f64; 2] {
             break;
         };
         (at, now) = (next, own);
+        let moved = by[0].hypot(by[1]);
+        if moved <= CONVERGED * last {
+            break;
+        }
+        last = moved;
     }
     at
 }
 
 impl<S: Scalar> Foot<S> {
-    /// The nearest point of the field, and the normal in ground axes.
+    /// The point of a field, with its axes in ground, that is nearest to the centre of a sphere, and the normal; `from` the field's
+    /// origin to the centre; in ground axes.
     pub(super) fn of(
-        (axes, field): (&[Vec3<S>; 3], &HeightField),
-        at: &Acting<S>,
+        (axes, field): ([Vec3<S>; 3], &HeightField),
+        from: Vec3<S>,
     ) -> (Self, Vec3<S>) {
-        let from = at.a.point() - at.b.point();
-        let axes = axes.each_ref().map(|own| at.b.motion.rotation * own);
         let [x, y, z] = axes.each_ref().map(|own| own.dot(&from));
         let r = Vec3::new(x, y, z);
         let mut place = nearest(field, &r.map(|x| x.re())).map(S::from);
@@ -138,36 +152,60 @@ impl<S: Scalar> Foot<S> {
         self.distance
     }
 
-    /// Pulls the cotangents of δ, n and z back.
+    /// How N changes in u and v, times two coefficients; N_i = (m_i − N N·m_i) / |m| with m = (−h_u, −h_v, 1).
+    fn turns(&self, [u, v]: [S; 2]) -> Vec3<S> {
+        let [a, b, c] = self.height.curvature;
+        let by = Vec3::new(-(a * u + b * v), -(b * u + c * v), S::zero());
+        (by - self.normal * self.normal.dot(&by)) * self.normal.z
+    }
+
+    fn in_axes(&self, v: &Vec3<S>) -> Vec3<S> {
+        let [x, y, z] = self.axes.each_ref().map(|own| own.dot(v));
+        Vec3::new(x, y, z)
+    }
+
+    fn in_ground(&self, v: &Vec3<S>) -> Vec3<S> {
+        self.axes[0] * v.x + self.axes[1] * v.y + self.axes[2] * v.z
+    }
+
+    /// The change of n where the centre moves by `by`, in ground axes.
+    pub(super) fn turned(&self, by: &Vec3<S>) -> Vec3<S> {
+        let by = self.in_axes(by);
+        let by = tangents(&self.height).map(|own| own.dot(&by));
+        let above = self.normal.z * self.distance;
+        self.in_ground(&self.turns(solved(second(&self.height, above), by)))
+    }
+
+    /// The cotangent of the centre in the axes of the field, from those of δ and n in ground axes.
+    fn by_place(&self, by_depth: S, by_normal: &Vec3<S>) -> Vec3<S> {
+        let by_local = self.in_axes(by_normal);
+        let by = [[S::one(), S::zero()], [S::zero(), S::one()]];
+        let by = by.map(|own| self.turns(own).dot(&by_local));
+        let above = self.normal.z * self.distance;
+        let [by_u, by_v] = solved(second(&self.height, above), by);
+        let [tangent_u, tangent_v] = tangents(&self.height);
+        tangent_u * by_u + tangent_v * by_v - self.normal * by_depth
+    }
+
+    /// The cotangent of the centre, from those of δ and n, all in ground axes.
+    pub(super) fn by_centre(&self, by_depth: S, by_normal: &Vec3<S>) -> Vec3<S> {
+        self.in_ground(&self.by_place(by_depth, by_normal))
+    }
+
+    /// Pulls the cotangents of δ and n back to the axes. Returns that of the centre, in ground axes.
     pub(super) fn pull(
         &self,
         contact: &Contact<S>,
         at: &Acting<S>,
-        (n, cot): (&Vec3<S>, &Cotangent<S>),
+        (by_depth, by_normal): (S, &Vec3<S>),
         out: &mut Pulled<S>,
-    ) {
-        out.scalars[RADIUS_A] += cot.penetration - n.dot(&cot.place);
-        let by_normal = cot.normal - cot.place * contact.radius;
-        let [x, y, z] = self.axes.each_ref().map(|own| own.dot(&by_normal));
-        let by_local = Vec3::new(x, y, z);
-        // N_i = (m_i − N N·m_i) / |m| with m = (−h_u, −h_v, 1).
-        let [a, b, c] = self.height.curvature;
-        let flat = (by_local - self.normal * self.normal.dot(&by_local)) * self.normal.z;
-        let by_u = -(flat.x * a + flat.y * b);
-        let by_v = -(flat.x * b + flat.y * c);
-        let above = self.normal.z * self.distance;
-        let [by_u, by_v] = solved(second(&self.height, above), [by_u, by_v]);
-        let [tangent_u, tangent_v] = tangents(&self.height);
-        let by_r = tangent_u * by_u + tangent_v * by_v - self.normal * cot.penetration;
-        let mut by_from = Vec3::zeros();
+    ) -> Vec3<S> {
+        let by_r = self.by_place(by_depth, by_normal);
         for k in 0..3 {
             let by_axis = self.from * by_r[k] + by_normal * self.normal[k];
-            by_from += self.axes[k] * by_r[k];
             let direction = &contact.surface.directions()[k];
             pull_direction(&at.b, (k, direction), by_axis, out);
         }
-        let none = Vec3::zeros();
-        pull_point(&at.a, [by_from + cot.place, none], &mut out.a);
-        pull_point(&at.b, [-by_from, none], &mut out.b);
+        self.in_ground(&by_r)
     }
 }

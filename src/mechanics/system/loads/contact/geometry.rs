@@ -3,16 +3,18 @@
 //! ```text
 //! plane      δ = R_A − n·x,   n given,          z = p − R_A n
 //! wheel      p = c_A + ϱ u,   u = −(n − a n·a) / √(1 − (n·a)²),   on a plane; a the axis, ϱ the radius of its circle
-//! heights    δ = R_A − d,     d to the nearest point ([`super::field`])
+//! heights    δ = R_A − d,     d to the nearest point ([`super::field`]), of a wheel to its nearest sphere ([`super::rim`])
 //! others     δ = R_A + R_B − d,   n = x / d,    z = p − x R_A / (R_A + R_B)   ([`super::nearest`])
 //! ```
 
 use super::cotangent::{Cotangent, RADIUS_A, WHEEL, pull_direction};
 use super::field::Foot;
 use super::nearest::Nearest;
+use super::rim::Rim;
 use crate::math::scalar::length;
 use crate::math::{Scalar, Vec3};
 use crate::model::contact::{Contact, Shape, Surface};
+use crate::model::height_field::HeightField;
 use crate::system::loads::Acting;
 use crate::system::loads::pull::{Pulled, pull_point};
 
@@ -36,6 +38,7 @@ enum On<S> {
     Wheel(Vec3<S>, Lowest<S>),
     Others(Nearest<S>),
     Field(Foot<S>),
+    Rim(Rim<S>),
 }
 
 /// Where a wheel is lowest, from its centre, of length 1; and √(1 − (n·a)²).
@@ -58,17 +61,7 @@ fn lowest<S: Scalar>(axis: &Vec3<S>, at: &Acting<S>, normal: &Vec3<S>) -> Lowest
 pub(super) fn touch<S: Scalar>(contact: &Contact<S>, at: &Acting<S>) -> Touch<S> {
     match &contact.surface {
         Surface::Plane { normal } => on_plane(contact, normal, at),
-        Surface::Field { axes, heights } => {
-            let (foot, normal) = Foot::of((axes, heights), at);
-            Touch {
-                normal,
-                square: S::one(),
-                is_crowned: false,
-                penetration: contact.radius - foot.distance(),
-                place: at.a.point() - normal * contact.radius,
-                on: On::Field(foot),
-            }
-        }
+        Surface::Field { axes, heights } => on_field(contact, (axes, heights), at),
         Surface::Sphere { .. } | Surface::Capsule { .. } | Surface::Box { .. } => {
             let (found, normal) = Nearest::of(contact, at);
             Touch {
@@ -108,6 +101,34 @@ fn on_plane<S: Scalar>(contact: &Contact<S>, normal: &Vec3<S>, at: &Acting<S>) -
     }
 }
 
+fn on_field<S: Scalar>(
+    contact: &Contact<S>,
+    (axes, heights): (&[Vec3<S>; 3], &HeightField),
+    at: &Acting<S>,
+) -> Touch<S> {
+    let (on, normal, distance, centre) = match &contact.shape {
+        Shape::Wheel { axis, radius } => {
+            let (rim, normal) = Rim::of((axis, *radius), (axes, heights), at);
+            let (distance, arm) = (rim.distance(), rim.arm());
+            (On::Rim(rim), normal, distance, at.a.point() + arm)
+        }
+        Shape::Sphere | Shape::Capsule { .. } => {
+            let axes = axes.each_ref().map(|own| at.b.motion.rotation * own);
+            let (foot, normal) = Foot::of((axes, heights), at.a.point() - at.b.point());
+            let distance = foot.distance();
+            (On::Field(foot), normal, distance, at.a.point())
+        }
+    };
+    Touch {
+        normal,
+        square: S::one(),
+        is_crowned: false,
+        penetration: contact.radius - distance,
+        place: centre - normal * contact.radius,
+        on,
+    }
+}
+
 /// Whether the contact cannot touch: the centre is far from a surface whose nearest point takes time to find.
 pub(super) fn is_far<S: Scalar>(contact: &Contact<S>, at: &Acting<S>) -> bool {
     let Surface::Field { axes, heights } = &contact.surface else {
@@ -115,7 +136,11 @@ pub(super) fn is_far<S: Scalar>(contact: &Contact<S>, at: &Acting<S>) -> bool {
     };
     let up = at.b.motion.rotation * axes[2];
     let height = up.dot(&(at.a.point() - at.b.point())).re();
-    let reach = contact.radius.re() + contact.law.width.re();
+    let around = match &contact.shape {
+        Shape::Wheel { radius, .. } => radius.re(),
+        Shape::Sphere | Shape::Capsule { .. } => 0.0,
+    };
+    let reach = around + contact.radius.re() + contact.law.width.re();
     let [along, across] = heights.places();
     // Beyond the grid the surface may rise.
     let inside = |axis: usize, all: &[f64]| {
@@ -131,6 +156,7 @@ pub(in crate::system::loads) fn meets(contact: &Contact<f64>, at: &Acting<f64>) 
     let near = super::super::ROUND_OFF;
     match touch(contact, at).on {
         On::Wheel(_, own) => own.size <= near,
+        On::Rim(own) => own.across() <= near,
         On::Others(own) if !matches!(contact.surface, Surface::Box { .. }) => {
             own.distance() <= near * contact.radius.max(at.a.point().norm())
         }
@@ -159,6 +185,13 @@ fn pull_wheel<S: Scalar>(
     by_across - axis * axis.dot(&by_across)
 }
 
+/// Pulls the cotangents of the centre of A from B's point, and of z, back to the points.
+fn pull_ends<S: Scalar>(at: &Acting<S>, by_from: Vec3<S>, cot: &Cotangent<S>, out: &mut Pulled<S>) {
+    let none = Vec3::zeros();
+    pull_point(&at.a, [by_from + cot.place, none], &mut out.a);
+    pull_point(&at.b, [-by_from, none], &mut out.b);
+}
+
 impl<S: Scalar> Touch<S> {
     /// Pulls the cotangents back to the bodies and parameters.
     pub(super) fn pull(
@@ -171,7 +204,19 @@ impl<S: Scalar> Touch<S> {
         let n = &self.normal;
         let (x, wheel) = match &self.on {
             On::Others(own) => return own.pull(contact, at, (n, cot), out),
-            On::Field(own) => return own.pull(contact, at, (n, cot), out),
+            On::Field(own) => {
+                out.scalars[RADIUS_A] += cot.penetration - n.dot(&cot.place);
+                let by_normal = cot.normal - cot.place * contact.radius;
+                let by_from = own.pull(contact, at, (cot.penetration, &by_normal), out);
+                return pull_ends(at, by_from, cot, out);
+            }
+            On::Rim(own) => {
+                let Some(axis) = contact.shape.direction() else {
+                    return;
+                };
+                let by_from = own.pull((contact, axis), at, cot, out);
+                return pull_ends(at, by_from, cot, out);
+            }
             On::Plane(x) => (x, None),
             On::Wheel(x, own) => (x, Some(own)),
         };

@@ -15,10 +15,11 @@ mod field;
 mod friction;
 mod geometry;
 mod nearest;
+mod rim;
 
 use super::normal_law::{self, NormalForce};
 use super::power::{relative, speed_seen};
-use super::pull::{Pulled, hold_virtual};
+use super::pull::{Pulled, Virtual, hold_virtual, moving, with_motions};
 use super::{Acting, stop};
 use crate::math::scalar::length;
 use crate::math::{Scalar, Vec3};
@@ -35,8 +36,8 @@ pub(in crate::system::loads) use geometry::meets;
 /// First place of the law among the scalars of a contact.
 const LAW: usize = 1;
 
-/// A contact that touches: where, how fast and how strongly.
-struct State<S> {
+/// A contact that presses: where, how fast and how strongly.
+pub(super) struct State<S> {
     touch: Touch<S>,
     velocity: Vec3<S>,
     slip: Slip<S>,
@@ -52,7 +53,7 @@ struct Cotangents<S> {
 }
 
 /// The contact in a motion, if it presses.
-fn state<S: Scalar>(contact: &Contact<S>, at: &Acting<S>) -> Option<State<S>> {
+pub(super) fn state<S: Scalar>(contact: &Contact<S>, at: &Acting<S>) -> Option<State<S>> {
     if is_far(contact, at) {
         return None;
     }
@@ -62,7 +63,7 @@ fn state<S: Scalar>(contact: &Contact<S>, at: &Acting<S>) -> Option<State<S>> {
     }
     let velocity = relative(at, &touch.place);
     let rate = -touch.normal.dot(&velocity);
-    let force = normal_law::force(&contact.law, touch.penetration, rate);
+    let force = normal_law::force(&contact.law, touch.penetration, rate) * contact.share();
     (!force.value.is_zero()).then(|| State {
         slip: Slip::of(&contact.friction, &touch, &velocity),
         touch,
@@ -71,14 +72,15 @@ fn state<S: Scalar>(contact: &Contact<S>, at: &Acting<S>) -> Option<State<S>> {
     })
 }
 
-/// Whether the contact presses, or would if it did not separate so fast.
-pub(super) fn touches<S: Scalar>(contact: &Contact<S>, at: &Acting<S>) -> bool {
-    !is_far(contact, at) && normal_law::touches(&contact.law, touch(contact, at).penetration)
-}
-
 /// δ.
 pub(super) fn penetration<S: Scalar>(contact: &Contact<S>, at: &Acting<S>) -> S {
     touch(contact, at).penetration
+}
+
+/// δ and n.
+pub(super) fn place<S: Scalar>(contact: &Contact<S>, at: &Acting<S>) -> (S, Vec3<S>) {
+    let touch = touch(contact, at);
+    (touch.penetration, touch.normal)
 }
 
 /// A bound of the rate of δ.
@@ -87,7 +89,7 @@ pub(super) fn speed<S: Scalar>(contact: &Contact<S>, at: &Acting<S>) -> f64 {
     let around = match &contact.shape {
         Shape::Sphere => 0.0,
         Shape::Wheel { radius, .. } => radius.re() * turning(at.a.motion),
-        Shape::Capsule { half } => {
+        Shape::Capsule { half, .. } => {
             length(half).re() * (turning(at.a.motion) + turning(at.b.motion))
         }
     };
@@ -121,7 +123,7 @@ pub(super) fn potential<S: Scalar>(contact: &Contact<S>, at: &Acting<S>) -> S {
     if is_far(contact, at) {
         return S::zero();
     }
-    normal_law::potential(&contact.law, penetration(contact, at)).0
+    normal_law::potential(&contact.law, penetration(contact, at)).0 * contact.share()
 }
 
 /// The place of contact, and the force on body A there, in ground axes; none if nothing touches.
@@ -151,55 +153,18 @@ pub(super) fn forces<S: Scalar>(contact: &Contact<S>, at: &Acting<S>) -> [(Vec3<
     [on(at.a.motion, force), on(at.b.motion, -force)]
 }
 
-/// Adds the derivatives of ψᵀf; `virtually` has the velocities ψ.
-pub(super) fn pull<S: Scalar>(
-    contact: &Contact<S>,
+/// The derivatives of ψᵀf in the state `now`, if the contact presses.
+pub(super) fn pulled<S: Scalar>(
+    (contact, now): (&Contact<S>, Option<&State<S>>),
     at: &Acting<S>,
-    virtually: &Acting<S>,
-    out: &mut Pulled<S>,
-) {
-    let Some(now) = state(contact, at) else {
-        return;
-    };
-    let (slip, force) = (&now.slip, &now.force);
-    let u = relative(virtually, &now.touch.place);
-    let (n, v, a) = (now.touch.normal, now.velocity, slip.apart);
-    let b = n.dot(&u);
-    let t = slip.tangential.dot(&u) / slip.size;
-    // P = N (b − μ t).
-    let by_force = b - slip.coefficient * t;
-    let by_t = -(slip.coefficient * force.value);
-    let by_product = by_t / slip.size;
-    let by_size = -(by_t * t / slip.size);
-    let by_coefficient = -(force.value * t);
-    let by_width = by_size * contact.friction.width / slip.size;
-    slip.give(&contact.friction, (by_coefficient, by_width), out);
-    // With m = nᵀn: v_t·u = v·u − a b / m, q = vᵀv − a² / m.
-    let m = now.touch.square;
-    let by_a = -by_size * a / slip.size / m - by_product * b / m;
-    let by_b = force.value - by_product * a / m;
-    let mut by_v = v * (by_size / slip.size) + u * by_product + n * by_a;
-    let by_u = v * by_product + n * by_b;
-    let mut by_normal = v * by_a + u * by_b + n * (by_size * a * a / slip.size / (m * m));
-    if now.touch.is_crowned {
-        by_normal += n * (by_product * a * b * 2.0 / (m * m));
+    psi: &Virtual<S>,
+) -> Pulled<S> {
+    let mut out = Pulled::zero();
+    if let Some(now) = now {
+        let motions = moving(at, psi);
+        now.pull_power(contact, at, &with_motions(at, &motions), &mut out);
     }
-    if let Some(falls) = slip.falls() {
-        let by_square = by_coefficient * falls * 2.0;
-        let by_a = -by_square * a / m;
-        by_v += v * by_square + n * by_a;
-        by_normal += v * by_a + n * (by_square * a * a / (m * m));
-    }
-    let mut place = pull_velocity(&virtually.a, &now.touch.place, by_u, &mut out.a);
-    place += pull_velocity(&virtually.b, &now.touch.place, -by_u, &mut out.b);
-    hold_virtual(out);
-    let cot = Cotangents {
-        force: by_force,
-        normal: by_normal,
-        velocity: by_v,
-        place,
-    };
-    now.pull(contact, at, cot, out);
+    out
 }
 
 /// Adds `weight` times the derivatives of N.
@@ -308,6 +273,7 @@ pub(super) fn pull_potential<S: Scalar>(
         return;
     }
     let depth = penetration(contact, at);
+    let weight = weight * contact.share();
     let (_, by_depth, [by_stiffness, by_width]) = normal_law::potential(&contact.law, depth);
     out.scalars[LAW] += by_stiffness * weight;
     out.scalars[LAW + 2] += by_width * weight;
@@ -315,6 +281,55 @@ pub(super) fn pull_potential<S: Scalar>(
 }
 
 impl<S: Scalar> State<S> {
+    /// Adds the derivatives of ψᵀf; `virtually` has the velocities ψ.
+    fn pull_power(
+        &self,
+        contact: &Contact<S>,
+        at: &Acting<S>,
+        virtually: &Acting<S>,
+        out: &mut Pulled<S>,
+    ) {
+        let (slip, force) = (&self.slip, &self.force);
+        let u = relative(virtually, &self.touch.place);
+        let (n, v, a) = (self.touch.normal, self.velocity, slip.apart);
+        let b = n.dot(&u);
+        let t = slip.tangential.dot(&u) / slip.size;
+        // P = N (b − μ t).
+        let by_force = b - slip.coefficient * t;
+        let by_t = -(slip.coefficient * force.value);
+        let by_product = by_t / slip.size;
+        let by_size = -(by_t * t / slip.size);
+        let by_coefficient = -(force.value * t);
+        let by_width = by_size * contact.friction.width / slip.size;
+        slip.give(&contact.friction, (by_coefficient, by_width), out);
+        // With m = nᵀn: v_t·u = v·u − a b / m, q = vᵀv − a² / m.
+        let m = self.touch.square;
+        let by_a = -by_size * a / slip.size / m - by_product * b / m;
+        let by_b = force.value - by_product * a / m;
+        let mut by_v = v * (by_size / slip.size) + u * by_product + n * by_a;
+        let by_u = v * by_product + n * by_b;
+        let mut by_normal = v * by_a + u * by_b + n * (by_size * a * a / slip.size / (m * m));
+        if self.touch.is_crowned {
+            by_normal += n * (by_product * a * b * 2.0 / (m * m));
+        }
+        if let Some(falls) = slip.falls() {
+            let by_square = by_coefficient * falls * 2.0;
+            let by_a = -by_square * a / m;
+            by_v += v * by_square + n * by_a;
+            by_normal += v * by_a + n * (by_square * a * a / (m * m));
+        }
+        let mut place = pull_velocity(&virtually.a, &self.touch.place, by_u, &mut out.a);
+        place += pull_velocity(&virtually.b, &self.touch.place, -by_u, &mut out.b);
+        hold_virtual(out);
+        let cot = Cotangents {
+            force: by_force,
+            normal: by_normal,
+            velocity: by_v,
+            place,
+        };
+        self.pull(contact, at, cot, out);
+    }
+
     /// Pulls the cotangents of N and v_t = v − n (n·v) / nᵀn back.
     fn pull_slip(
         &self,
@@ -376,8 +391,8 @@ fn pull_velocity<S: Scalar>(
     by_arm
 }
 
-/// Adds the derivatives in the parameters of a contact to their cotangents; `end` is the end of a capsule that has the contact, or 0.
-pub(super) fn give(pulled: &Pulled<f64>, end: f64, own: &mut Contact<f64>) {
+/// Adds the derivatives in the parameters of a contact to their cotangents; `part` is that of a capsule's half at which it touches, or 0.
+pub(super) fn give(pulled: &Pulled<f64>, part: f64, own: &mut Contact<f64>) {
     let scalars = &pulled.scalars;
     own.point_a += pulled.a.frame.point;
     own.point_b += pulled.b.frame.point;
@@ -409,6 +424,6 @@ pub(super) fn give(pulled: &Pulled<f64>, end: f64, own: &mut Contact<f64>) {
             *axis += pulled.direction;
             *radius += scalars[WHEEL];
         }
-        Shape::Capsule { half } => *half += pulled.direction + pulled.a.frame.point * end,
+        Shape::Capsule { half, .. } => *half += pulled.direction + pulled.a.frame.point * part,
     }
 }

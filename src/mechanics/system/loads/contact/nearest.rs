@@ -119,7 +119,7 @@ impl<S: Scalar> Nearest<S> {
         let halves = contact.surface.directions();
         let turned = |direction: &Vec3<S>| at.b.motion.rotation * direction;
         let own = match &contact.shape {
-            Shape::Capsule { half } => {
+            Shape::Capsule { half, .. } => {
                 let a = at.a.motion.rotation * half;
                 let turned: Vec<Vec3<S>> = halves.iter().map(turned).collect();
                 let crown = match halves.is_empty() {
@@ -297,7 +297,8 @@ impl<S: Scalar> Nearest<S> {
         (mut by_y, by_distance, by_place): (Vec3<S>, S, Vec3<S>),
         out: &mut Pulled<S>,
     ) -> Vec3<S> {
-        let (Some((a, (t, between), crown)), Shape::Capsule { half }) = (self.own, &contact.shape)
+        let (Some((a, (t, between), crown)), Shape::Capsule { half, .. }) =
+            (self.own, &contact.shape)
         else {
             return by_y;
         };
