@@ -11,8 +11,8 @@ use super::shared::Shared;
 use crate::functions::resolution::{Resolution, resolution};
 use crate::functions::{Function, Reduction, Scene};
 use crate::integrate::{
-    Chosen, Grid, IntegrationFailure, Limits, Method, Samples, Settings, Spacing, StepSolver,
-    Trajectory, choice, has_kinks, simulate, simulate_by,
+    Chosen, Grid, IntegrationFailure, Limits, MEMORY, Method, Samples, Settings, Spacing,
+    StepSolver, Trajectory, choice, has_kinks, simulate, simulate_by,
 };
 use crate::problem::{Case, Division, Problem};
 use std::sync::Arc;
@@ -56,7 +56,9 @@ pub struct Integration {
     pub refreshes: usize,
     /// Number of designs that do not fulfil the conditions of the lowering.
     pub unlowered: usize,
+    /// Memory of the steps for gradients \[bytes\], and of those whose samples may be chosen anew.
     memory: usize,
+    to_resample: usize,
     /// Whether the functions have derivatives: the problem has variables; and whether they will be requested.
     derivatives: bool,
     gradients: bool,
@@ -151,6 +153,12 @@ impl Integration {
             }
             _ => simulation.spacing.clone(),
         };
+        let most = memory::for_gradients(simulation.memory);
+        let memory = if gradients { most } else { 0 };
+        let to_resample = match (samples, &spacing) {
+            (Samples::Quadrature(_), Spacing::Tolerance(_)) => memory.max(most.min(MEMORY)),
+            _ => memory,
+        };
         Self {
             method: simulation.method,
             solver: solver(problem, &spacing),
@@ -162,10 +170,8 @@ impl Integration {
             chosen: None,
             refreshes: 0,
             unlowered: 0,
-            memory: match (gradients, simulation.memory) {
-                (true, given) => memory::for_gradients(given),
-                (false, _) => 0,
-            },
+            memory,
+            to_resample,
             derivatives: !problem.variables.is_empty(),
             gradients,
             event: None,
@@ -192,6 +198,7 @@ impl Integration {
             refreshes: 0,
             unlowered: 0,
             memory: 0,
+            to_resample: 0,
             derivatives: false,
             gradients: false,
             event: None,
@@ -492,7 +499,10 @@ impl Integration {
                 found => return Ok((self.keep(scene, found?), None)),
             },
         };
-        let wanted = self.wanted();
+        let wanted = Settings {
+            memory: self.to_resample,
+            ..self.wanted()
+        };
         // Steps with too large an error may still have found an event.
         scene.duration = waited;
         if let Some(until) = &scene.until {
@@ -518,7 +528,11 @@ impl Integration {
             settings,
             reason,
         } = chosen;
-        let (run, settings) = self.resolved(scene, run, settings)?;
+        let (mut run, mut settings) = self.resolved(scene, run, settings)?;
+        settings.memory = self.memory;
+        if self.memory == 0 {
+            run.forget_steps();
+        }
         let grid = match &settings.spacing {
             Spacing::Frozen(grid) => Some(grid.clone()),
             Spacing::Steps(_) | Spacing::Tolerance(_) => None,
@@ -553,7 +567,7 @@ impl Integration {
     }
 
     /// The motion of `run` with the cells that its sums need, and its settings. Cells are chosen
-    /// and the motion is repeated until the cells no longer change.
+    /// until they no longer change; the motion is repeated only if its steps are not stored.
     fn resolved(
         &self,
         scene: &Scene<f64>,
@@ -569,11 +583,17 @@ impl Integration {
             if cells == grid.all_cells() {
                 break;
             }
-            // Repeated also if cells are only removed: a resumed run knows only these cells.
-            settings.spacing = Spacing::Frozen(grid.clone().with_cells(cells));
-            let counts = run.counts;
-            run = simulate(&scene.model, run.duration, &settings)?;
-            run.counts += counts;
+            // Also if cells are only removed: a resumed run knows only these cells.
+            settings.spacing = Spacing::Frozen(grid.clone().with_cells(cells.clone()));
+            let (counts, duration) = (run.counts, run.duration);
+            run = match run.resampled(&scene.model, cells, settings.samples) {
+                Some(run) => run,
+                None => {
+                    let mut again = simulate(&scene.model, duration, &settings)?;
+                    again.counts += counts;
+                    again
+                }
+            };
         }
         Ok((run, settings))
     }

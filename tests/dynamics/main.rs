@@ -65,6 +65,7 @@ mod reaction_functions;
 mod reactions_carry_weight;
 mod reduced_shells;
 mod redundant_joints;
+mod resampling;
 mod rotating_plates;
 mod rounded_joints;
 mod side_by_side;

@@ -14,6 +14,7 @@ pub mod multipliers;
 mod parts;
 pub mod quadrature;
 pub mod replay;
+mod resample;
 pub mod rows;
 pub mod scale;
 pub mod schedule;

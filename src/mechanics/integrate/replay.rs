@@ -130,6 +130,14 @@ impl<B: Block> Tape<B> {
         self.retried.push((k, solver));
     }
 
+    /// Frees the memory of its steps.
+    pub fn forget(&mut self) {
+        self.full = true;
+        self.block = self.block.empty();
+        self.schedule = None;
+        self.checkpoints.clear();
+    }
+
     /// Memory in use \[bytes\]; `number` is the size of a number.
     pub fn bytes(&self, number: usize) -> usize {
         self.block.numbers() * number + self.checkpoints.len() * self.room.checkpoint

@@ -135,6 +135,19 @@ impl<S: Scalar> Trajectory<S> {
         self.lambda.extend_from_slice(lambda);
     }
 
+    /// Keeps the start alone of the samples.
+    pub(super) fn forget_samples(&mut self) {
+        let (nq, nv) = (self.numbering.positions(), self.numbering.velocities());
+        self.instants.truncate(1);
+        self.places.truncate(1);
+        self.shown.truncate(1);
+        (self.weights, self.moving) = (vec![0.0], vec![0.0]);
+        self.q.truncate(nq);
+        self.v.truncate(nv);
+        self.a.truncate(nv);
+        self.lambda.truncate(self.numbering.constraints());
+    }
+
     /// Adds the weight of the start of a step to the last instant.
     pub(super) fn weigh_start(&mut self, step: &Step) {
         let growth = self.grid.growth(step.from);

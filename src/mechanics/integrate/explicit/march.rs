@@ -1,6 +1,7 @@
 //! The march of the explicit method over given or adaptive steps.
 
 use super::record::{Node, NodeView};
+use super::samples::sample;
 use super::step::{StepFailure, Stepper};
 use super::stiffness::{Stiffness, Watch};
 use super::tableau::{ORDER, STAGES};
@@ -9,9 +10,9 @@ use super::tape::{Block, Tape};
 use crate::integrate::control::Controller;
 use crate::integrate::energy::{Ledger, Supply};
 use crate::integrate::failure::IntegrationFailure;
-use crate::integrate::grid::{Grid, SamplePlace, place};
+use crate::integrate::grid::Grid;
 use crate::integrate::quadrature;
-use crate::integrate::quadrature::{Intervals, Samples};
+use crate::integrate::quadrature::Samples;
 use crate::integrate::scale::Scale;
 use crate::integrate::settings::{Method, Settings, Spacing};
 use crate::integrate::singular::{self, Steadiness};
@@ -355,39 +356,6 @@ fn open<S: SolveScalar>(
     let speeds = scale.speeds(stepper.field.numbering, from.v, &stepper.data.v_raw);
     let [a, b] = LOOKED_AT.map(|theta| stepper.open(from, (h, theta), start + h * theta, speeds));
     if a.is_nan() || a > b { a } else { b }
-}
-
-/// Adds the samples of the accepted step.
-fn sample<S: SolveScalar>(
-    run: &mut Trajectory<S>,
-    stepper: &mut Stepper<S>,
-    (from, to): (NodeView<S>, NodeView<S>),
-    samples: Samples,
-    next: (&mut usize, &Intervals),
-) -> Result<(), StepFailure> {
-    let k = run.grid.steps();
-    let start = run.grid.ends()[k - 1];
-    let h = run.grid.size(run.duration, run.grid.width(k), start);
-    let step = run.grid.step(k);
-    if let Samples::Quadrature(_) = samples {
-        run.weigh_start(&step);
-    }
-    for due in quadrature::due(samples, next, step) {
-        let place = place(&run.grid, k, due.at);
-        match place {
-            SamplePlace::Node(_) => run.push(due, place, [to.q, to.v, to.a, &[]]),
-            SamplePlace::Inside { theta, .. } => {
-                if !stepper.data.dense {
-                    let start = run.grid.time(run.duration, start);
-                    stepper.dense_stages((from, to), (start, h))?;
-                    run.counts.evaluations += super::tableau::ALL - super::tableau::END - 1;
-                }
-                let [q, v, a] = stepper.inside(from, h, theta);
-                run.push(due, place, [q, v, a, &[]]);
-            }
-        }
-    }
-    Ok(())
 }
 
 /// Estimated error of a step relative to the scene's scale (Hairer, Nørsett & Wanner 1993,

@@ -11,6 +11,7 @@
 pub mod march;
 pub mod record;
 pub mod replayer;
+pub mod samples;
 pub mod step;
 pub mod stiffness;
 pub mod tableau;

@@ -123,6 +123,26 @@ impl<S: SolveScalar> StepData<Vec<S>> {
         Self::of_parts(parts, false)
     }
 
+    /// Takes the stages of another, which may be without those of the dense output.
+    pub(super) fn set(&mut self, other: StepData<&[S]>) {
+        self.dense = other.dense;
+        let own = [
+            &mut self.q,
+            &mut self.v,
+            &mut self.qdot,
+            &mut self.a,
+            &mut self.lambda,
+            &mut self.q_raw,
+            &mut self.v_raw,
+            &mut self.s,
+            &mut self.delta,
+            &mut self.sigma,
+        ];
+        for (own, other) in own.into_iter().zip(other.parts()) {
+            own[..other.len()].copy_from_slice(other);
+        }
+    }
+
     /// A view of it.
     pub fn view(&self) -> StepData<&[S]> {
         StepData {

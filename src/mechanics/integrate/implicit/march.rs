@@ -1,16 +1,17 @@
 //! The march of the implicit methods.
 
 use super::Stage;
-use super::predict::{Past, dense};
+use super::predict::Past;
 use super::radau::Scheme;
+use super::samples::sample;
 use super::solver::{Solver, starting_stage};
 use super::tape::{Block, Tape};
 use crate::integrate::control::Controller;
 use crate::integrate::energy::Ledger;
 use crate::integrate::failure::IntegrationFailure;
-use crate::integrate::grid::{Grid, SamplePlace, place};
+use crate::integrate::grid::Grid;
 use crate::integrate::quadrature;
-use crate::integrate::quadrature::{Due, Samples};
+use crate::integrate::quadrature::Samples;
 use crate::integrate::scale::Scale;
 use crate::integrate::settings::{Method, Settings, Spacing};
 use crate::integrate::singular::{MOST_IMPLICIT, Steadiness};
@@ -23,7 +24,7 @@ use crate::model::Model;
 use crate::system::accelerations::Accelerations;
 use crate::system::initial::InitialState;
 use crate::system::redundant_rows::EXCHANGE_WEIGHT;
-use crate::system::{BodyMotion, Numbering, bodies, flexible, turns};
+use crate::system::{BodyMotion, Numbering, flexible, turns};
 
 /// Integrates from a consistent start.
 ///
@@ -346,40 +347,5 @@ fn reserve<S: SolveScalar>(run: &mut Trajectory<S>, given: Option<&Grid>, sample
     if let Some(grid) = given {
         let steps = grid.steps();
         run.reserve(steps, samples.count(steps, Some(grid)));
-    }
-}
-
-/// Adds the samples of the accepted step, from its start and its stages.
-fn sample<S: SolveScalar>(
-    run: &mut Trajectory<S>,
-    scheme: &Scheme,
-    (from, stages): (&Stage<S>, &[Stage<S>]),
-    (samples, due): (Samples, impl Iterator<Item = Due>),
-    inside: &mut Stage<S>,
-) {
-    let k = run.grid.steps();
-    let h = run
-        .grid
-        .size(run.duration, run.grid.width(k), run.grid.ends()[k - 1]);
-    let last = &stages[stages.len() - 1];
-    let step = run.grid.step(k);
-    if let Samples::Quadrature(_) = samples {
-        run.weigh_start(&step);
-    }
-    for due in due {
-        let place = place(&run.grid, k, due.at);
-        match place {
-            SamplePlace::Node(_) => {
-                run.push(due, place, [&last.q, &last.v, &last.vdot, &last.lambda])
-            }
-            SamplePlace::Inside { theta, .. } => {
-                dense(scheme, from, stages, h, theta, inside);
-                bodies::bring_to_unit(&run.numbering, &mut inside.q);
-                let Stage {
-                    q, v, vdot, lambda, ..
-                } = &*inside;
-                run.push(due, place, [q, v, vdot, lambda]);
-            }
-        }
     }
 }

@@ -13,6 +13,7 @@ pub mod newton;
 pub mod predict;
 pub mod radau;
 pub mod replayer;
+pub mod samples;
 mod scales;
 pub mod solver;
 pub mod split;
