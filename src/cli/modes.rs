@@ -1,7 +1,8 @@
 //! Tables of the modes of a machine, as text and in the result of `optimize simulate --json`.
 
 use crate::driver::modes::ToldModes;
-use crate::system::equilibrium::{MachineMode, Whirl};
+use crate::driver::start::not_stable;
+use crate::system::equilibrium::{MachineMode, MachineModes, Whirl};
 use serde_json::{Map, Value, json};
 use std::fmt::Write;
 
@@ -15,7 +16,7 @@ fn name(whirl: Whirl) -> &'static str {
 /// The modes in lines, with their whirl if the machine turns.
 pub(super) fn text(told: &ToldModes) -> String {
     let mut text = String::new();
-    let mut table = |title: String, modes: &[MachineMode], turns: bool| {
+    let mut table = |title: String, own: &MachineModes, turns: bool| {
         let _ = writeln!(text, "  {title}");
         let fixed = if turns {
             "  whirl     in the fixed frame [Hz]"
@@ -23,7 +24,7 @@ pub(super) fn text(told: &ToldModes) -> String {
             ""
         };
         let _ = writeln!(text, "  mode   frequency [Hz]   damping ratio{fixed}");
-        for (k, mode) in modes.iter().enumerate() {
+        for (k, mode) in own.modes.iter().enumerate() {
             let whirl = match mode.whirl {
                 Some((whirl, frequency)) => format!("  {:8}  {frequency:.9e}", name(whirl)),
                 None => String::new(),
@@ -35,6 +36,9 @@ pub(super) fn text(told: &ToldModes) -> String {
                 mode.frequency,
                 damping(mode)
             );
+        }
+        if let Some(rate) = own.growth {
+            let _ = writeln!(text, "  {}", not_stable(rate));
         }
     };
     match told.speed {
@@ -72,16 +76,25 @@ pub(super) fn json(told: &ToldModes) -> Map<String, Value> {
         }
         own
     };
-    let list = |modes: &[MachineMode]| modes.iter().map(one).collect::<Vec<Value>>();
+    let list = |own: &MachineModes| own.modes.iter().map(one).collect::<Vec<Value>>();
     let mut all = Map::new();
     if let Some(speed) = told.speed {
         all.insert("speed".to_owned(), json!(speed));
     }
     all.insert("modes".to_owned(), json!(list(&told.modes)));
+    if let Some(rate) = told.modes.growth {
+        all.insert("growth".to_owned(), json!(rate));
+    }
     if !told.diagram.is_empty() {
         let diagram = told.diagram.iter();
         let diagram: Vec<Value> = diagram
-            .map(|(speed, modes)| json!({"speed": speed, "modes": list(modes)}))
+            .map(|(speed, modes)| {
+                let mut own = json!({"speed": speed, "modes": list(modes)});
+                if let Some(rate) = modes.growth {
+                    own["growth"] = json!(rate);
+                }
+                own
+            })
             .collect();
         all.insert("campbell".to_owned(), json!(diagram));
     }

@@ -195,7 +195,7 @@ pub struct Damping {
 }
 
 /// Linear elastic forces and torques of all relative motion in a joint, with damping: −(K x + C ẋ), x the displacement of its
-/// first body against the second along e1, e2, e3 and the rotation about them.
+/// bodies against each other along e1, e2, e3 and the rotation about them.
 #[derive(Clone, Debug, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 pub struct Bushing {
@@ -205,8 +205,22 @@ pub struct Bushing {
     pub stiffness: BushingStiffness,
     /// C, default zero.
     pub damping: Option<BushingDamping>,
+    /// The body of the joint with which e1, e2, e3 turn: `first` or `second` of its `between`. The force acts at the joint's point on the
+    /// other. Default: ground if a `free` joint has it and the bushing neither resists the turn about e3 nor has friction against a slide,
+    /// as a bearing of a shaft; else the body that is not ground, or the first.
+    pub axes: Option<BushingAxes>,
     /// Friction of a bearing or guide by the force of the bushing across e3, default none.
     pub friction: Option<BearingFriction>,
+}
+
+/// A body of a joint.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Deserialize, JsonSchema)]
+#[serde(rename_all = "snake_case")]
+pub enum BushingAxes {
+    /// The first of `between`.
+    First,
+    /// The second.
+    Second,
 }
 
 /// Friction of a bearing or guide: μ ρ N tanh(ω / w) against the rate ω of the turn about e3 or of the slide along it, with N =

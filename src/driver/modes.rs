@@ -1,7 +1,7 @@
 //! The modes that a file asks for, at one speed of rotation and over several.
 
 use crate::problem::Problem;
-use crate::system::equilibrium::MachineMode;
+use crate::system::equilibrium::MachineModes;
 use crate::system::failure::AssemblyFailure;
 
 /// The modes of a machine that are told and drawn.
@@ -10,9 +10,9 @@ pub struct ToldModes {
     /// Speed of rotation \[rad/s\], if the machine turns.
     pub speed: Option<f64>,
     /// The modes there, the lowest first.
-    pub modes: Vec<MachineMode>,
+    pub modes: MachineModes,
     /// Speeds of rotation with their modes, as a Campbell diagram shows.
-    pub diagram: Vec<(f64, Vec<MachineMode>)>,
+    pub diagram: Vec<(f64, MachineModes)>,
 }
 
 /// The modes that the file asks for at the design `x`; `None` if it asks for none.

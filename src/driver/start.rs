@@ -25,8 +25,7 @@ pub fn notes(problem: &Problem, x: &[f64]) -> Vec<String> {
         return Vec::new();
     }
     match problem.without_equilibrium() {
-        // Of the turning frame, where the stiffness alone does not tell.
-        Some(_) if problem.is_turning() => Vec::new(),
+        Some(_) if problem.is_turning() => of_rotation(problem, x),
         Some(_) if problem.is_rest() => of_rest(problem, x),
         Some(placed) => {
             let mut notes = of_placement(&placed, x, " before equilibrium is sought");
@@ -37,6 +36,14 @@ pub fn notes(problem: &Problem, x: &[f64]) -> Vec<String> {
         }
         None => of_placement(problem, x, ""),
     }
+}
+
+/// A note on a machine in steady rotation, if a disturbance grows.
+fn of_rotation(problem: &Problem, x: &[f64]) -> Vec<String> {
+    let found = problem.modes_of_machine(x, (1, None));
+    let growth = found.ok().and_then(|own| own.growth);
+    let told = growth.map(|rate| format!("the steady rotation is {}", not_stable(rate)));
+    told.into_iter().collect()
 }
 
 /// Notes on a machine at rest: whether it would stay there.
@@ -75,7 +82,7 @@ pub fn unstable(problem: &Problem, x: &[f64]) -> Option<String> {
 }
 
 /// That a disturbance grows with `rate` \[1/s\].
-fn not_stable(rate: f64) -> String {
+pub fn not_stable(rate: f64) -> String {
     let time = 1.0 / rate;
     format!("not stable: a disturbance grows by a factor of e in {time:.1e} s")
 }

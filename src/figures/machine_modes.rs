@@ -13,7 +13,7 @@ use crate::plots::{BodyMotion, CampbellPoint, Lapse, Motion, Sense, campbell, mo
 use crate::problem::{Drawing, Problem};
 use crate::report::number::significant;
 use crate::system::bodies::advance;
-use crate::system::equilibrium::{MachineMode, Whirl};
+use crate::system::equilibrium::{MachineMode, MachineModes, Whirl};
 
 /// Modes that are drawn.
 const MOST_MODES: usize = 3;
@@ -43,7 +43,7 @@ pub(super) fn figures(
     if let (Some((_, own)), Some((_, design)), Some(drawing)) =
         (found.last(), designs.last(), drawings.last())
     {
-        let shapes: Vec<Motion> = (own.modes.iter().take(MOST_MODES).enumerate())
+        let shapes: Vec<Motion> = (own.modes.modes.iter().take(MOST_MODES).enumerate())
             .filter_map(|(k, mode)| shape(design, drawing, (k, mode)))
             .collect();
         all.push(("modes.svg", motion(&shapes, &scenery(drawing))));
@@ -59,7 +59,7 @@ pub(super) fn figures(
 }
 
 fn points(told: &ToldModes) -> Vec<CampbellPoint> {
-    let of = |(speed, modes): &(f64, Vec<MachineMode>)| {
+    let of = |(speed, modes): &(f64, MachineModes)| {
         let speed = *speed;
         let one = move |mode: &MachineMode| {
             let (sense, frequency) = match mode.whirl {
@@ -73,7 +73,7 @@ fn points(told: &ToldModes) -> Vec<CampbellPoint> {
                 sense,
             }
         };
-        modes.iter().map(one).collect::<Vec<_>>()
+        modes.modes.iter().map(one).collect::<Vec<_>>()
     };
     told.diagram.iter().flat_map(of).collect()
 }

@@ -7,6 +7,7 @@
 mod aggregates;
 mod beam;
 mod bounds;
+mod bushings;
 mod cams;
 mod case_faults;
 mod cases;

@@ -1,5 +1,6 @@
 //! Makes the loads of a model from those of a file.
 
+use super::bushings::bushing;
 use super::contacts::contact as contact_of;
 use super::controllers::controller;
 use super::courses::course as motion;
@@ -10,7 +11,7 @@ use super::placement::Assembly;
 use super::spread_loads::dead_shares;
 use crate::math::scalar::unit;
 use crate::math::{Scalar, Vec3};
-use crate::model::load::{BearingFriction, Plate};
+use crate::model::load::Plate;
 use crate::model::{
     Air, Axes, Cable, CablePoint, DegreeOfFreedom, DistributedLoad, ForceTable, Load, LoadKind,
     NormalLaw, Spread, TimeFunction,
@@ -19,9 +20,8 @@ use crate::prepared::Prepared;
 use crate::quantity::{Quantity, Vector};
 use crate::schema::Document;
 use crate::schema::loads::{
-    Axes as WrittenAxes, BushingEntries, Cable as WrittenCable, CableLength,
-    CablePoint as WrittenPoint, ForceTable as WrittenTable, Interpolation, Load as WrittenLoad,
-    Motion, Stop, TimeFunction as Written,
+    Axes as WrittenAxes, Cable as WrittenCable, CableLength, CablePoint as WrittenPoint,
+    ForceTable as WrittenTable, Interpolation, Load as WrittenLoad, Stop, TimeFunction as Written,
 };
 use std::sync::Arc;
 
@@ -123,36 +123,7 @@ fn kind<S: Scalar>(
                 None => LoadKind::BallDamping { joint, coefficient },
             }
         }
-        WrittenLoad::Bushing(bushing) => {
-            // The symmetric part, of which two equal numbers are halves.
-            let matrix = |entries: &BushingEntries| -> Vec<S> {
-                let at = |i: usize, k: usize| entries[i][k].map_or(S::zero(), get);
-                let rows = (0..6).flat_map(|i| (0..6).map(move |k| (i, k)));
-                let all = rows.map(|(i, k)| match i == k {
-                    true => at(i, k),
-                    false => (at(i, k) + at(k, i)) * 0.5,
-                });
-                all.collect()
-            };
-            LoadKind::Bushing {
-                joint: joint(document, &bushing.joint).0,
-                stiffness: matrix(&bushing.stiffness.entries()),
-                damping: match &bushing.damping {
-                    Some(damping) => matrix(&damping.entries()),
-                    None => vec![S::zero(); 36],
-                },
-                friction: bushing.friction.as_ref().map(|own| BearingFriction {
-                    dof: match own.motion {
-                        Motion::Turn => DegreeOfFreedom::Rotation,
-                        Motion::Slide => DegreeOfFreedom::Translation,
-                    },
-                    coefficient: get(&own.coefficient),
-                    radius: own.radius.as_ref().map_or(S::one(), get),
-                    width: get(&own.width),
-                    load_width: get(&own.load_width),
-                }),
-            }
-        }
+        WrittenLoad::Bushing(own) => bushing(document, assembly, own),
         WrittenLoad::Friction(friction) => {
             let (joint, written) = joint(document, &friction.joint);
             LoadKind::Friction {

@@ -4,7 +4,7 @@ use super::Problem;
 use super::scene::turning;
 use crate::math::Vec3;
 use crate::schema::modes::ModeTable;
-use crate::system::equilibrium::{MachineMode, modes_of_machine};
+use crate::system::equilibrium::{MachineModes, modes_of_machine};
 use crate::system::failure::AssemblyFailure;
 
 impl Problem {
@@ -39,7 +39,7 @@ impl Problem {
         &self,
         x: &[f64],
         (count, speed): (usize, Option<f64>),
-    ) -> Result<Vec<MachineMode>, AssemblyFailure> {
+    ) -> Result<MachineModes, AssemblyFailure> {
         let placed = self.without_equilibrium();
         let model = placed.as_ref().unwrap_or(self).as_placed(x);
         let turning = turning(&self.written, &self.extended(x))

@@ -120,6 +120,84 @@ fn the_same_in_other_descriptions() {
     agree(&unlowered_values(&file), "without reductions");
 }
 
+/// A shaft on bearings of ground lies still in their springs and keeps its spin, however fast it turns: their damping does not turn
+/// with it. That of the shaft's own axes throws it out above its critical speed, √(2k/m) = 316 rad/s.
+#[test]
+fn bearings_on_ground_do_not_turn_with_the_shaft() {
+    let spin = 900.0;
+    let of = |change: &dyn Fn(&mut Value)| {
+        let mut file = rotor(json!({"duration": 0.4, "tolerance": 1e-9}));
+        file["bodies"]["rotor"]["velocity"]["angular"] = json!([0, 0, spin]);
+        for side in ["left", "right"] {
+            let bearing = file["loads"][side]["bushing"]
+                .as_object_mut()
+                .expect("a bushing");
+            bearing.remove("friction");
+            change(&mut file["loads"][side]["bushing"]);
+        }
+        file["functions"] = json!({
+            "spin": {"final": {"angular_velocity": {"body": "rotor", "direction": [0, 0, 1]}}},
+            "sag": {"final": {"position": {"body": "rotor", "direction": [0, 1, 0]}}},
+            "side": {"final": {"position": {"body": "rotor", "direction": [1, 0, 0]}}}
+        });
+        file
+    };
+    let sag = -20.0 * GRAVITY / 2e6;
+    let still = |file: &Value, what: &str| {
+        let [found, sagged, side] = values(file)[..] else {
+            panic!("three values")
+        };
+        close(found, spin, 1e-9 * spin, what);
+        close(sagged, sag, 1e-11, what);
+        close(side, 0.0, 1e-11, what);
+    };
+    still(&of(&|_| ()), "by default");
+    still(&of(&|bearing| bearing["axes"] = json!("second")), "by name");
+    let mut other = of(&|bearing| bearing["axes"] = json!("first"));
+    for side in ["left", "right"] {
+        other["joints"][side]["free"]["between"] = json!(["ground", "rotor"]);
+    }
+    still(&other, "in another order");
+    let mut housed = of(&|bearing| bearing["axes"] = json!("second"));
+    housed["bodies"]["housing"] = json!({"mass": 3, "inertia": {"xx": 1, "yy": 1, "zz": 1}});
+    housed["joints"]["fast"] = json!({"weld": {"between": ["housing", "ground"], "at": [0, 0, 0]}});
+    for side in ["left", "right"] {
+        housed["joints"][side]["free"]["between"] = json!(["rotor", "housing"]);
+    }
+    still(&housed, "in a housing");
+    let thrown = values(&of(&|bearing| bearing["axes"] = json!("first")));
+    assert!(thrown[2].hypot(thrown[1] - sag) > 1e-3, "{thrown:?}");
+}
+
+/// A shaft in bearings of a carrier that swings: axes of either body, with friction, by every method.
+#[test]
+fn gradients_with_the_axes_of_either_body() {
+    for axes in ["first", "second"] {
+        for method in methods(0.2, 60) {
+            let mut file = rotor(method);
+            file["bodies"]["carrier"] =
+                json!({"mass": 30, "inertia": {"xx": 2, "yy": 3, "zz": 2.5}});
+            file["joints"]["swing"] = json!({"revolute": {"between": ["carrier", "ground"], "at": [0, 1, 0.2], "axis": [1, 0.3, 0.2]}});
+            for side in ["left", "right"] {
+                file["joints"][side]["free"]["between"] = json!(["rotor", "carrier"]);
+                file["loads"][side]["bushing"]["axes"] = json!(axes);
+                file["loads"][side]["bushing"]["stiffness"] =
+                    json!({"diagonal": [2e4, 3e4, 1e4, 0, 0, 0]});
+            }
+            let paths = [
+                "/joints/left/free/at/0",
+                "/joints/left/free/axis/1",
+                "/loads/left/bushing/stiffness/diagonal/1",
+                "/loads/right/bushing/damping/diagonal/0",
+                "/loads/left/bushing/friction/coefficient",
+                "/bodies/carrier/mass",
+            ];
+            vary(&mut file, &paths.map(str::to_owned));
+            gradients_are_exact(&parsed(&file), &json!({"axes": axes}));
+        }
+    }
+}
+
 #[test]
 fn bad_bearings_are_told() {
     let told = |change: &dyn Fn(&mut Value), words: &[&str]| {

@@ -266,7 +266,7 @@ fn bushings(numbers: &mut Numbers) -> Vec<(JointKind, LoadKind<f64>)> {
         Some((DegreeOfFreedom::Rotation, 0.2, 0.5)),
         Some((DegreeOfFreedom::Translation, 1.0, 3.0)),
     ];
-    let one = |own: Option<(DegreeOfFreedom, f64, f64)>| {
+    let one = |(own, of_second): (Option<(DegreeOfFreedom, f64, f64)>, bool)| {
         let friction = own.map(|(dof, radius, width)| BearingFriction {
             dof,
             coefficient: 0.3,
@@ -276,13 +276,15 @@ fn bushings(numbers: &mut Numbers) -> Vec<(JointKind, LoadKind<f64>)> {
         });
         let kind = LoadKind::Bushing {
             joint: 0,
+            of_second,
             stiffness: matrix(2.0),
             damping: matrix(0.3),
             friction,
         };
         (JointKind::Spherical, kind)
     };
-    frictions.into_iter().map(one).collect()
+    let both = |own| [(own, false), (own, true)];
+    frictions.into_iter().flat_map(both).map(one).collect()
 }
 
 /// Contacts with every surface: deep and within the onset, sliding and nearly sticking, of spheres, points, wheels and capsules.

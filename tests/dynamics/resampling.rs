@@ -183,3 +183,27 @@ fn sums_cost_one_motion() {
         assert_eq!(run.bytes()[1], 0, "{file}: no gradient is asked");
     }
 }
+
+/// The damping ratio of two pendulums with a spring between is zero but for round-off, which needs no cells.
+#[test]
+fn round_off_needs_no_cells() {
+    let rod = |length: f64, z: f64| {
+        json!({"shape": {"rod": {"length": length}}, "mass": 1, "points": {"a": [-0.5 * length, 0, 0]},
+            "place": {"put": "a", "at": [0, 0, z], "turn": {"z": -60}}})
+    };
+    let hinge = |body: &str| json!({"revolute": {"between": [body, "ground"], "at": format!("{body}.a"), "axis": [0, 0, 1]}});
+    let problem = problem(&json!({
+        "version": 1, "name": "pair",
+        "bodies": {"u": rod(1.0, 0.0), "l": rod(0.7, 1.0)},
+        "joints": {"j": hinge("u"), "k": hinge("l")},
+        "loads": {"s": {"spring": {"between": ["l", "u"], "at": {"a": [0.1, 0, 0], "b": [0.2, 0, 0]}, "rest_length": 0.9, "stiffness": 50}}},
+        "simulation": {"duration": 0.5},
+        "functions": {"z": {"mean": {"damping_ratio": {"mode": 1}}}}
+    }));
+    let mut scene = problem.scene(&problem.start());
+    let (run, _) = Integration::new(&problem, &scene, None, false)
+        .simulate(&mut scene)
+        .expect("runs");
+    let most = (1..=run.grid.steps()).map(|k| run.grid.cells(k)).max();
+    assert_eq!(most, Some(1));
+}

@@ -228,7 +228,9 @@ fn modes(problem: &Problem, count: usize) -> Vec<(f64, Option<(Whirl, f64)>)> {
     let all = problem
         .modes_of_machine(&problem.start(), (count, None))
         .expect("modes");
-    all.iter()
+    assert_eq!(all.growth, None);
+    all.modes
+        .iter()
         .map(|mode| (mode.frequency, mode.whirl))
         .collect()
 }
@@ -294,6 +296,88 @@ fn the_critical_speed_is_that_of_synchronous_whirl() {
     });
     for own in check(&parsed(&file), &parsed(&file).start()).expect("derivatives") {
         assert!(own.adjoint.is_nan(), "{own:?}");
+    }
+}
+
+/// A cylinder on dampers and springs of ground has the decay c/2m at every speed; unequal bearings have no steady rotation.
+#[test]
+fn dampers_of_ground_damp_a_rotor_at_every_speed() {
+    let (mass, k, c): (f64, f64, f64) = (10.0, 1e6, 800.0);
+    let shaft = |speed: f64, other: f64| {
+        let bearing = |joint: &str| json!({"bushing": {"joint": joint, "stiffness": {"diagonal": [k, other, k, 0, 0, 0]}, "damping": {"diagonal": [c, c, c, 0, 0, 0]}}});
+        let joint = |at: f64| json!({"free": {"between": ["rotor", "ground"], "at": [0, 0, at], "axis": [0, 0, 1]}});
+        json!({
+            "version": 1, "name": "shaft", "analysis": "modes", "gravity": [0, 0, 0],
+            "turning": {"axis": [0, 0, 1], "at": [0, 0, 0], "speed": speed},
+            "bodies": {"rotor": {"mass": mass, "inertia": {"xx": 0.3, "yy": 0.3, "zz": 0.1}}},
+            "joints": {"left": joint(-0.3), "right": joint(0.3)},
+            "loads": {"left": bearing("left"), "right": bearing("right")},
+        })
+    };
+    for speed in [0.0, 100.0, 1000.0] {
+        let problem = parsed(&shaft(speed, k));
+        let found = problem
+            .modes_of_machine(&problem.start(), (5, None))
+            .expect("modes");
+        assert_eq!(found.growth, None, "{speed}");
+        let decay = c / mass;
+        let rate = (2.0 * k / mass - decay * decay).sqrt();
+        for seen in [rate + speed, (rate - speed).abs()] {
+            let near = found.modes.iter().any(|own| {
+                let omega = 2.0 * PI * own.frequency;
+                let ratio = decay / omega.hypot(decay);
+                (omega - seen).abs() < 1e-7 * rate && (own.damping_ratio - ratio).abs() < 1e-8
+            });
+            assert!(near, "{speed}, {seen}: {:?}", found.modes);
+        }
+    }
+    let text = fault(&shaft(300.0, 2.0 * k));
+    assert!(text.contains("not the same after it has turned"), "{text}");
+}
+
+/// A pendulum hangs from a shaft that turns: above √(g/l) its rest grows as √(Ω² − g/l), which the table tells and functions refuse.
+#[test]
+fn rotation_that_diverges_is_told() {
+    let hanging = |speed: f64| {
+        let ball = json!({"xx": 1e-9, "yy": 1e-9, "zz": 1e-9});
+        json!({
+            "version": 1, "name": "hanging", "analysis": "modes", "gravity": [0, -9.81, 0],
+            "turning": {"axis": [0, 1, 0], "speed": speed},
+            "bodies": {"hub": {"mass": 1, "inertia": {"xx": 0.1, "yy": 0.1, "zz": 0.1}},
+                "bob": {"mass": 1, "inertia": ball, "place": {"at": [0, -1, 0]}}},
+            "joints": {"axle": {"revolute": {"between": ["hub", "ground"], "at": [0, 0, 0], "axis": [0, 1, 0]}},
+                "pin": {"revolute": {"between": ["bob", "hub"], "at": [0, 0, 0], "axis": [0, 0, 1]}}},
+            "drives": {"motor": {"joint": "axle", "turn": {"rate": 1}}}
+        })
+    };
+    for (speed, growth) in [(2.0, None), (10.0, Some((100.0_f64 - 9.81).sqrt()))] {
+        let file = hanging(speed);
+        let problem = parsed(&file);
+        let found = problem
+            .modes_of_machine(&problem.start(), (3, None))
+            .expect("modes");
+        match (found.growth, growth) {
+            (Some(found), Some(growth)) => {
+                assert!((found - growth).abs() < 1e-6 * growth, "{found}")
+            }
+            (found, growth) => assert_eq!(found, growth, "{speed}"),
+        }
+        let notes = flexbody_driver::start::notes(&problem, &problem.start());
+        assert_eq!(notes.len(), usize::from(growth.is_some()), "{notes:?}");
+        for function in [
+            json!({"frequency": {"mode": 1}}),
+            json!({"lowest_frequency": {}}),
+            json!({"damping_ratio": {"mode": 1}}),
+        ] {
+            let mut file = file.clone();
+            file["functions"] = json!({"f": function});
+            if growth.is_some() {
+                let text = fault(&file);
+                assert!(text.contains("rotation is not stable"), "{text}");
+            } else {
+                values(&file);
+            }
+        }
     }
 }
 

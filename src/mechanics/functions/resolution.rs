@@ -154,7 +154,7 @@ fn natural(unit: &str, model: &Model<f64>, run: &Trajectory<f64>) -> f64 {
         "m/s" => speed,
         "m/s²" => square / length,
         "m²/s²" => square,
-        "rad" => 1.0,
+        "rad" | "1" => 1.0,
         "rad/s" => speed / length,
         "kg m/s" => mass * speed,
         "kg m²/s" => mass * speed * length,

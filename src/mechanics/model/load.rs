@@ -131,6 +131,8 @@ pub enum LoadKind<S> {
     Bushing {
         /// The joint.
         joint: usize,
+        /// Whether e are the axes on body B, as those of a bearing on ground past which a shaft turns, and not those on A.
+        of_second: bool,
         /// K by rows, symmetric, of displacements along e1, e2, e3 and rotations about them; 36 numbers \[N/m, N, N m\].
         stiffness: Vec<S>,
         /// C likewise \[N s/m, N s, N m s\].
@@ -238,7 +240,7 @@ parameters!(enum LoadKind {
     TorsionSpring { joint, counter; rest_angle, stiffness, cubic, damping, tables },
     Damping { joint, dof; coefficient, table },
     BallDamping { joint; coefficient },
-    Bushing { joint; stiffness, damping, friction },
+    Bushing { joint, of_second; stiffness, damping, friction },
     Friction { joint, dof; size, width },
     Drag { body; point, coefficient, width, plate },
     JointStop { joint, dof, counter; limits, law },

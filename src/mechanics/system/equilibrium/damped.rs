@@ -22,7 +22,7 @@ use crate::system::failure::AssemblyFailure;
 use std::f64::consts::PI;
 
 /// Part of |s| by which a vibration may grow by round-off.
-const GROWS: f64 = 1e-6;
+pub(super) const GROWS: f64 = 1e-6;
 /// Number of spectra that are known.
 const KEPT: usize = 4;
 
@@ -62,6 +62,8 @@ pub(super) struct Spectrum {
     pub clusters: Vec<Cluster>,
     /// Whether D is part of it.
     pub damped: bool,
+    /// The fastest growth of a motion that does not oscillate \[1/s\].
+    pub diverging: Option<f64>,
     wanted: WantedModes,
 }
 
@@ -71,6 +73,7 @@ impl Spectrum {
         Self {
             clusters,
             damped: true,
+            diverging: None,
             wanted: WantedModes::default(),
         }
     }
@@ -102,16 +105,35 @@ impl Solver<'_> {
     /// needed. Free motions and motions that do not oscillate do not count. The spectrum becomes known.
     ///
     /// # Errors
-    /// Rest is not stable, or there are fewer vibrations.
+    /// Rest is not stable, or there are fewer vibrations. Steady rotation may be unstable if not all are needed.
     pub(super) fn spectrum(
         &self,
         found: &State<f64>,
         wanted: &WantedModes,
         (damped, all_needed): (bool, bool),
     ) -> Result<Spectrum, AssemblyFailure> {
-        if let Some(known) = self.known.spectrum(&self.numbers, (wanted, damped)) {
-            return Ok(known);
+        let own = match self.known.spectrum(&self.numbers, (wanted, damped)) {
+            Some(known) => known,
+            None => self.sought(found, wanted, (damped, all_needed))?,
+        };
+        match own.diverging {
+            Some(rate) if all_needed && self.given.turning.is_some() => {
+                let time = 1.0 / rate;
+                let why = format!(
+                    "the rotation is not stable: a motion grows by a factor of e in {time:.1e} s without an oscillation"
+                );
+                Err(AssemblyFailure::NoModes { why })
+            }
+            _ => Ok(own),
         }
+    }
+
+    fn sought(
+        &self,
+        found: &State<f64>,
+        wanted: &WantedModes,
+        (damped, all_needed): (bool, bool),
+    ) -> Result<Spectrum, AssemblyFailure> {
         let none = |why: String| Err(AssemblyFailure::NoModes { why });
         let turning = self.given.turning.as_ref();
         let released = Released::of((self.model, self.layout.numbering), found)?;
@@ -132,14 +154,15 @@ impl Solver<'_> {
         // An aggregate needs one.
         let asked = wanted.count.max(1);
         let mut count = wanted.least().max(1);
-        let values = loop {
+        let (values, diverging) = loop {
             let own = lowest(&matrices, scales.clone(), (count, allowed))?;
             let there = own.values.len();
-            if own.all && there < asked && all_needed {
+            let diverges = turning.is_some() && own.diverging.is_some();
+            if own.all && there < asked && all_needed && !diverges {
                 return none(format!("mode {asked} is asked for, and there are {there}"));
             }
             if own.all || wanted.reach(&frequencies(&own.values)) {
-                break own.values;
+                break (own.values, own.diverging);
             }
             if count >= MOST_MODES {
                 return none(format!(
@@ -157,6 +180,7 @@ impl Solver<'_> {
         let out = Spectrum {
             clusters,
             damped,
+            diverging,
             wanted: *wanted,
         };
         self.known.keep_spectrum(&self.numbers, &out);

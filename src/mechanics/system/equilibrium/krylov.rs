@@ -7,6 +7,7 @@
 //! Several vectors start, so that copies of an eigenvalue are found, and where a space is exhausted another one follows. A
 //! small machine has its whole space, and all eigenvalues of it.
 
+use super::damped::GROWS;
 use super::pencil::Matrices;
 use super::ritz::schur;
 use crate::linalg::SparseLu;
@@ -29,12 +30,11 @@ const CONVERGED: f64 = 1e-6;
 /// σ, as a part of the largest eigenvalue that is wanted; and eigenvalues that count, relative to it.
 const PART: f64 = 0.25;
 const FREE: f64 = 1e-5;
-/// Part of a rate by which it may grow by round-off.
-const GROWS: f64 = 1e-6;
-
 /// Eigenvalues with positive imaginary part by size |s|.
 pub(super) struct Found {
     pub values: Vec<Complex64>,
+    /// The fastest growth of a motion that does not oscillate, among those of their sizes.
+    pub diverging: Option<f64>,
     /// Whether there are no others.
     pub all: bool,
 }
@@ -161,13 +161,15 @@ impl Space<'_> {
         Some(rates.collect())
     }
 
-    /// Those with positive imaginary part, by size.
-    fn values(&self, sizes: &Range<f64>) -> Option<Vec<Complex64>> {
-        let all = self.rates()?.into_iter();
-        let counts = |s: &Complex64| s.im > 0.0 && s.norm() > sizes.start && s.norm() < sizes.end;
-        let mut out: Vec<Complex64> = all.filter(counts).collect();
-        out.sort_by(|a, b| a.norm().total_cmp(&b.norm()));
-        Some(out)
+    /// Those with positive imaginary part, by size, and the largest positive one without.
+    fn values(&self, sizes: &Range<f64>) -> Option<(Vec<Complex64>, Option<f64>)> {
+        let mut all = self.rates()?;
+        all.retain(|s| s.norm() > sizes.start && s.norm() < sizes.end);
+        let positive = all.iter().filter(|s| s.im == 0.0 && s.re > 0.0);
+        let diverging = positive.map(|s| s.re).reduce(f64::max);
+        all.retain(|s| s.im > 0.0);
+        all.sort_by(|a, b| a.norm().total_cmp(&b.norm()));
+        Some((all, diverging))
     }
 }
 
@@ -184,6 +186,7 @@ pub(super) fn lowest(
     if allowed == 0 {
         return Ok(Found {
             values: Vec::new(),
+            diverging: None,
             all: true,
         });
     }
@@ -216,20 +219,26 @@ fn search(
         most: 2 * allowed,
     };
     let mut dimension = DIMENSION * (count + STARTS);
-    let mut before: Vec<Complex64> = Vec::new();
+    let (mut before, mut diverged): (Vec<Complex64>, Option<f64>) = (Vec::new(), None);
     loop {
         let more = space.grow(dimension.min(2 * allowed));
-        let values = space.values(sizes).ok_or(AssemblyFailure::Singular)?;
+        let (values, diverging) = space.values(sizes).ok_or(AssemblyFailure::Singular)?;
         if !more {
-            return Ok(Found { values, all: true });
+            return Ok(Found {
+                values,
+                diverging,
+                all: true,
+            });
         }
         let near = |(a, b): (&Complex64, &Complex64)| (a - b).norm() <= CONVERGED * b.norm();
         let stays = values.len() >= count
             && before.len() >= count
             && before.iter().zip(&values).take(count).all(near);
         if stays {
+            let same = |a: &f64| diverged.is_some_and(|b| (a - b).abs() <= CONVERGED * b);
             return Ok(Found {
                 values: values[..count].to_vec(),
+                diverging: diverging.filter(same),
                 all: false,
             });
         }
@@ -237,7 +246,7 @@ fn search(
             let why = format!("{count} modes do not converge");
             return Err(AssemblyFailure::NoModes { why });
         }
-        before = values;
+        (before, diverged) = (values, diverging);
         dimension *= GROWTH;
     }
 }

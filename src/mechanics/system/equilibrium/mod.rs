@@ -70,7 +70,7 @@ pub use stability::growth;
 use std::sync::{Arc, Mutex};
 pub use turning::Turning;
 pub use unsteady::left_out;
-pub use whirl::{MachineMode, Whirl, modes_of_machine};
+pub use whirl::{MachineMode, MachineModes, Whirl, modes_of_machine};
 
 const ITERATIONS: usize = 60;
 /// Newton's method stops at this change of positions, relative to the length scale; and at `STAGNANT`, if changes do

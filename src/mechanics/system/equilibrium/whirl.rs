@@ -11,7 +11,7 @@
 //! of the mode in the fixed frame, and its sign tells forward from backward whirl.
 
 use super::critical::Machine;
-use super::damped::Spectrum;
+use super::damped::{GROWS, Spectrum};
 use super::equations::State;
 use super::turning::Turning;
 use super::{KnownStarts, Solver, Sought, WantedModes, with_solution, without_spin};
@@ -49,6 +49,15 @@ pub struct MachineMode {
     pub shape: Vec<Complex64>,
 }
 
+/// The lowest modes of a machine.
+#[derive(Clone, Debug, PartialEq)]
+pub struct MachineModes {
+    /// The modes, the lowest |s| first.
+    pub modes: Vec<MachineMode>,
+    /// The fastest growth among them and among motions of their sizes that do not oscillate \[1/s\]; `None` if none grows.
+    pub growth: Option<f64>,
+}
+
 /// The modes of a machine about rest, or about steady rotation, at most `count`, the lowest |s| first. The bodies of `model` are placed and
 /// undeformed.
 ///
@@ -58,7 +67,7 @@ pub fn modes_of_machine(
     model: &Model<f64>,
     known: &KnownStarts,
     (turning, count): (Option<&Turning<f64>>, usize),
-) -> Result<Vec<MachineMode>, AssemblyFailure> {
+) -> Result<MachineModes, AssemblyFailure> {
     let own = without_spin(model);
     let numbering = Numbering::new(&own);
     let machine: Machine<f64> = (&own, &numbering, known);
@@ -69,7 +78,12 @@ pub fn modes_of_machine(
             ..WantedModes::default()
         };
         let spectrum = solver.spectrum(found, &wanted, (true, false))?;
-        Ok(solver.machine_modes(found, &spectrum))
+        let rates = spectrum.clusters.iter().flat_map(|own| &own.values);
+        let growing = rates.filter(|s| s.re > GROWS * s.norm()).map(|s| s.re);
+        Ok(MachineModes {
+            growth: growing.chain(spectrum.diverging).reduce(f64::max),
+            modes: solver.machine_modes(found, &spectrum),
+        })
     })
 }
 

@@ -5,7 +5,8 @@
 //! V = ½ xᵀ K x,   ψᵀf = −(K x + C ẋ)ᵀ ẋ(ψ)
 //! ```
 //!
-//! with d = P_A − P_B, e the axes of the frame on A and e' those on B, which are turned by φ about n. The six numbers are
+//! with d = P_A − P_B, e the axes of the frame on A and e' those on B, which are turned by φ about n. A load of which
+//! [`of_second`](crate::model::LoadKind::Bushing::of_second) is set has its bodies exchanged: A is the second. The six numbers are
 //! those of constraint rows, Sliding and Perpendicular, so that their rates and derivatives are those of joints, and
 //! momentum and angular momentum are kept. φ is known up to a quarter turn.
 

@@ -56,6 +56,19 @@ pub(super) struct Acting<'a, S> {
     part: f64,
 }
 
+impl<S> Acting<'_, S> {
+    /// The same with the other body first.
+    fn exchanged(self) -> Self {
+        let [a, b] = self.bodies;
+        Self {
+            bodies: [b, a],
+            a: self.b,
+            b: self.a,
+            ..self
+        }
+    }
+}
+
 /// Calls `visit(number of the load, its kind, its bodies)` for every load on one or two bodies; once for each sphere of a
 /// capsule.
 fn for_each_load<S: Scalar>(
@@ -150,6 +163,11 @@ fn for_loads<S: Scalar>(
                 });
                 Acting { counted, ..acting }
             }
+            LoadKind::Bushing {
+                joint,
+                of_second: true,
+                ..
+            } => on_joint(*joint).exchanged(),
             LoadKind::Damping { joint, .. }
             | LoadKind::BallDamping { joint, .. }
             | LoadKind::Bushing { joint, .. }

@@ -96,7 +96,9 @@ pub(super) fn give_to_parameters(
             *coefficient += s0;
         }
         (
-            LoadKind::Bushing { joint, .. },
+            LoadKind::Bushing {
+                joint, of_second, ..
+            },
             LoadKind::Bushing {
                 stiffness,
                 damping,
@@ -113,7 +115,8 @@ pub(super) fn give_to_parameters(
             if let Some(six) = &pulled.six {
                 bushing::give(six, stiffness, damping);
             }
-            give_to_joint(model, *joint, pulled);
+            let [a, b] = [&pulled.a.frame, &pulled.b.frame];
+            give_to_frames(model, *joint, if *of_second { [b, a] } else { [a, b] });
         }
         (LoadKind::Friction { joint, .. }, LoadKind::Friction { size, width, .. }) => {
             *size += s0;
@@ -182,6 +185,10 @@ pub(super) fn give_to_parameters(
 }
 
 pub(super) fn give_to_joint(model: &mut Model<f64>, joint: usize, pulled: &Pulled<f64>) {
+    give_to_frames(model, joint, [&pulled.a.frame, &pulled.b.frame]);
+}
+
+fn give_to_frames(model: &mut Model<f64>, joint: usize, [a, b]: [&JointFrame<f64>; 2]) {
     let joint = &mut model.joints[joint];
     let add = |own: &mut JointFrame<f64>, by: &JointFrame<f64>| {
         own.point += by.point;
@@ -189,6 +196,6 @@ pub(super) fn give_to_joint(model: &mut Model<f64>, joint: usize, pulled: &Pulle
             own.axes[k] += by.axes[k];
         }
     };
-    add(&mut joint.frame_a, &pulled.a.frame);
-    add(&mut joint.frame_b, &pulled.b.frame);
+    add(&mut joint.frame_a, a);
+    add(&mut joint.frame_b, b);
 }
