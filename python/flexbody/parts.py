@@ -100,6 +100,7 @@ __all__ = [
     "Motion",
     "BushingStiffness",
     "BushingDamping",
+    "BushingAxes",
     "BearingFriction",
     "Wheel",
     "Surface2",
@@ -897,6 +898,9 @@ TorqueInTime: TypeAlias = Union[Real, VaryingTorque]
 
 Motion: TypeAlias = Literal["turn", "slide"]
 """A degree of freedom of a joint."""
+
+BushingAxes: TypeAlias = Literal["first", "second"]
+"""A body of a joint."""
 
 CableLength: TypeAlias = Union[Real, Sliding]
 """Length of a cable."""
@@ -3251,6 +3255,7 @@ class loads(Kinds):
         joint: str,
         stiffness: BushingStiffness,
         damping: BushingDamping | None = None,
+        axes: BushingAxes | None = None,
         friction: BearingFriction | None = None,
     ) -> Load:
         """Linear elastic forces and torques of all relative motion in a joint, with damping.
@@ -3264,6 +3269,13 @@ class loads(Kinds):
             K.
         damping : one of `bushing_dampings`, optional
             C, default zero.
+        axes : "first" or "second", optional
+            The body of the joint with which e1, e2, e3 turn: `first` or `second` of its `between`. The force acts at
+            the joint's point on the other. Default: ground if a `free` joint has it and the bushing neither resists
+            the turn about e3 nor has friction against a slide, as a bearing of a shaft; else the body that is not
+            ground, or the first.
+            "first": The first of `between`.
+            "second": The second.
         friction : `bearing_friction(…)`, optional
             Friction of a bearing or guide by the force of the bushing across e3, default none.
         """

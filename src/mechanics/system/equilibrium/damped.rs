@@ -10,7 +10,7 @@
 
 use super::eigenpairs::{Cluster, clusters};
 use super::equations::State;
-use super::krylov::lowest;
+use super::krylov::{GROWS, lowest};
 use super::modes::{Vibration, WantedModes};
 use super::pencil::{At, Matrices, contracted};
 use super::released::Released;
@@ -21,8 +21,9 @@ use crate::structures::modes::MOST_MODES;
 use crate::system::failure::AssemblyFailure;
 use std::f64::consts::PI;
 
-/// Part of |s| by which a vibration may grow by round-off.
-pub(super) const GROWS: f64 = 1e-6;
+/// Relative distance of a growth from the eigenvalue that it is found to be, and how many are looked at.
+const NEAR: f64 = 1e-4;
+const MOST_DIVERGING: usize = 8;
 /// Number of spectra that are known.
 const KEPT: usize = 4;
 
@@ -90,6 +91,17 @@ impl Spectrum {
     }
 }
 
+/// The fastest of these growths without oscillation that are eigenvalues, and no round-off of motions without inertia.
+fn confirmed(matrices: &Matrices, rates: &[f64]) -> Option<f64> {
+    let is_one = |rate: f64| {
+        let found = clusters(matrices, &[Complex64::new(rate, 0.0)]);
+        let near = |s: &Complex64| (s - rate).norm() <= NEAR * rate;
+        found.is_ok_and(|own| own.iter().flat_map(|own| &own.values).all(near))
+    };
+    let lowest = rates.iter().take(MOST_DIVERGING).copied();
+    lowest.filter(|&rate| is_one(rate)).reduce(f64::max)
+}
+
 /// Frequencies of rates \[Hz\], the size of the last one in its place: beyond it there are others of any.
 fn frequencies(rates: &[Complex64]) -> Vec<f64> {
     let mut all: Vec<f64> = rates.iter().map(|s| s.im / (2.0 * PI)).collect();
@@ -117,7 +129,7 @@ impl Solver<'_> {
             None => self.sought(found, wanted, (damped, all_needed))?,
         };
         match own.diverging {
-            Some(rate) if all_needed && self.given.turning.is_some() => {
+            Some(rate) if all_needed => {
                 let time = 1.0 / rate;
                 let why = format!(
                     "the rotation is not stable: a motion grows by a factor of e in {time:.1e} s without an oscillation"
@@ -157,12 +169,15 @@ impl Solver<'_> {
         let (values, diverging) = loop {
             let own = lowest(&matrices, scales.clone(), (count, allowed))?;
             let there = own.values.len();
-            let diverges = turning.is_some() && own.diverging.is_some();
-            if own.all && there < asked && all_needed && !diverges {
+            let diverging = match turning {
+                Some(_) => confirmed(&matrices, &own.diverging),
+                None => None,
+            };
+            if own.all && there < asked && all_needed && diverging.is_none() {
                 return none(format!("mode {asked} is asked for, and there are {there}"));
             }
             if own.all || wanted.reach(&frequencies(&own.values)) {
-                break (own.values, own.diverging);
+                break (own.values, diverging);
             }
             if count >= MOST_MODES {
                 return none(format!(

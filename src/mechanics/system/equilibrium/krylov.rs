@@ -7,7 +7,6 @@
 //! Several vectors start, so that copies of an eigenvalue are found, and where a space is exhausted another one follows. A
 //! small machine has its whole space, and all eigenvalues of it.
 
-use super::damped::GROWS;
 use super::pencil::Matrices;
 use super::ritz::schur;
 use crate::linalg::SparseLu;
@@ -30,11 +29,14 @@ const CONVERGED: f64 = 1e-6;
 /// σ, as a part of the largest eigenvalue that is wanted; and eigenvalues that count, relative to it.
 const PART: f64 = 0.25;
 const FREE: f64 = 1e-5;
+/// Part of |s| by which a vibration may grow by round-off.
+pub(super) const GROWS: f64 = 1e-6;
+
 /// Eigenvalues with positive imaginary part by size |s|.
 pub(super) struct Found {
     pub values: Vec<Complex64>,
-    /// The fastest growth of a motion that does not oscillate, among those of their sizes.
-    pub diverging: Option<f64>,
+    /// Real positive ones by size. Some may be round-off, or have not converged.
+    pub diverging: Vec<f64>,
     /// Whether there are no others.
     pub all: bool,
 }
@@ -161,12 +163,13 @@ impl Space<'_> {
         Some(rates.collect())
     }
 
-    /// Those with positive imaginary part, by size, and the largest positive one without.
-    fn values(&self, sizes: &Range<f64>) -> Option<(Vec<Complex64>, Option<f64>)> {
+    /// Those with positive imaginary part, by size, and the positive ones without.
+    fn values(&self, sizes: &Range<f64>) -> Option<(Vec<Complex64>, Vec<f64>)> {
         let mut all = self.rates()?;
         all.retain(|s| s.norm() > sizes.start && s.norm() < sizes.end);
         let positive = all.iter().filter(|s| s.im == 0.0 && s.re > 0.0);
-        let diverging = positive.map(|s| s.re).reduce(f64::max);
+        let mut diverging: Vec<f64> = positive.map(|s| s.re).collect();
+        diverging.sort_by(f64::total_cmp);
         all.retain(|s| s.im > 0.0);
         all.sort_by(|a, b| a.norm().total_cmp(&b.norm()));
         Some((all, diverging))
@@ -186,7 +189,7 @@ pub(super) fn lowest(
     if allowed == 0 {
         return Ok(Found {
             values: Vec::new(),
-            diverging: None,
+            diverging: Vec::new(),
             all: true,
         });
     }
@@ -219,7 +222,7 @@ fn search(
         most: 2 * allowed,
     };
     let mut dimension = DIMENSION * (count + STARTS);
-    let (mut before, mut diverged): (Vec<Complex64>, Option<f64>) = (Vec::new(), None);
+    let mut before: Vec<Complex64> = Vec::new();
     loop {
         let more = space.grow(dimension.min(2 * allowed));
         let (values, diverging) = space.values(sizes).ok_or(AssemblyFailure::Singular)?;
@@ -235,10 +238,9 @@ fn search(
             && before.len() >= count
             && before.iter().zip(&values).take(count).all(near);
         if stays {
-            let same = |a: &f64| diverged.is_some_and(|b| (a - b).abs() <= CONVERGED * b);
             return Ok(Found {
                 values: values[..count].to_vec(),
-                diverging: diverging.filter(same),
+                diverging,
                 all: false,
             });
         }
@@ -246,7 +248,7 @@ fn search(
             let why = format!("{count} modes do not converge");
             return Err(AssemblyFailure::NoModes { why });
         }
-        (before, diverged) = (values, diverging);
+        before = values;
         dimension *= GROWTH;
     }
 }

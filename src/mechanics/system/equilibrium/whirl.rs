@@ -11,8 +11,9 @@
 //! of the mode in the fixed frame, and its sign tells forward from backward whirl.
 
 use super::critical::Machine;
-use super::damped::{GROWS, Spectrum};
+use super::damped::Spectrum;
 use super::equations::State;
+use super::krylov::GROWS;
 use super::turning::Turning;
 use super::{KnownStarts, Solver, Sought, WantedModes, with_solution, without_spin};
 use crate::math::{Complex64, Vec3};
