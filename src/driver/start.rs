@@ -40,7 +40,8 @@ pub fn notes(problem: &Problem, x: &[f64]) -> Vec<String> {
 
 /// A note on a machine in steady rotation, if a disturbance grows.
 fn of_rotation(problem: &Problem, x: &[f64]) -> Vec<String> {
-    let found = problem.modes_of_machine(x, (1, None));
+    let count = problem.told_modes().map_or(1, |told| told.count);
+    let found = problem.modes_of_machine(x, (count, None));
     let growth = found.ok().and_then(|own| own.growth);
     let told = growth.map(|rate| format!("the steady rotation is {}", not_stable(rate)));
     told.into_iter().collect()

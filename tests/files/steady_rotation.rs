@@ -396,6 +396,17 @@ fn inner_damping_is_unstable_above_the_critical_speed() {
             .into();
         let found = values(&file);
         assert_eq!(found.iter().all(|ratio| *ratio > 0.0), stable, "{found:?}");
+        // The growth is told whatever modes are.
+        let problem = parsed(&file);
+        let growth = |count: usize| {
+            let found = problem.modes_of_machine(&problem.start(), (count, None));
+            found.expect("modes").growth
+        };
+        let [one, many] = [1, 8].map(growth);
+        assert_eq!(one.is_none(), stable, "{one:?}");
+        if let (Some(one), Some(many)) = (one, many) {
+            assert!((one - many).abs() < 1e-6 * many, "{one} {many}");
+        }
     }
 }
 

@@ -10,7 +10,7 @@
 
 use super::eigenpairs::{Cluster, clusters};
 use super::equations::State;
-use super::krylov::{GROWS, lowest};
+use super::krylov::{GROWS, growing, lowest};
 use super::modes::{Vibration, WantedModes};
 use super::pencil::{At, Matrices, contracted};
 use super::released::Released;
@@ -23,7 +23,9 @@ use std::f64::consts::PI;
 
 /// Relative distance of a growth from the eigenvalue that it is found to be, and how many are looked at.
 const NEAR: f64 = 1e-4;
-const MOST_DIVERGING: usize = 8;
+const MOST_GROWING: usize = 16;
+/// Dimension up to which all motions in steady rotation are looked at.
+const WHOLE: usize = 200;
 /// Number of spectra that are known.
 const KEPT: usize = 4;
 
@@ -91,15 +93,15 @@ impl Spectrum {
     }
 }
 
-/// The fastest of these growths without oscillation that are eigenvalues, and no round-off of motions without inertia.
-fn confirmed(matrices: &Matrices, rates: &[f64]) -> Option<f64> {
-    let is_one = |rate: f64| {
-        let found = clusters(matrices, &[Complex64::new(rate, 0.0)]);
-        let near = |s: &Complex64| (s - rate).norm() <= NEAR * rate;
+/// The fastest growth of these rates that are eigenvalues, and no round-off of motions without inertia.
+fn confirmed(matrices: &Matrices, rates: impl Iterator<Item = Complex64>) -> Option<f64> {
+    let is_one = |rate: &Complex64| {
+        let found = clusters(matrices, &[*rate]);
+        let near = |s: &Complex64| (s - rate).norm() <= NEAR * rate.norm();
         found.is_ok_and(|own| own.iter().flat_map(|own| &own.values).all(near))
     };
-    let lowest = rates.iter().take(MOST_DIVERGING).copied();
-    lowest.filter(|&rate| is_one(rate)).reduce(f64::max)
+    let lowest = rates.take(MOST_GROWING);
+    lowest.filter(is_one).map(|s| s.re).reduce(f64::max)
 }
 
 /// Frequencies of rates \[Hz\], the size of the last one in its place: beyond it there are others of any.
@@ -140,6 +142,29 @@ impl Solver<'_> {
         }
     }
 
+    /// The fastest growth of a motion in steady rotation: of all motions if they are few, else of those in a spectrum.
+    ///
+    /// # Errors
+    /// Singular equations.
+    pub(super) fn growth_in_rotation(
+        &self,
+        found: &State<f64>,
+        spectrum: &Spectrum,
+    ) -> Result<Option<f64>, AssemblyFailure> {
+        let turning = self.given.turning.as_ref();
+        let at = At::rest(self.layout, self.model, found, turning);
+        let allowed = at.freedom();
+        if turning.is_some() && 0 < allowed && 2 * allowed <= WHOLE {
+            let matrices = Matrices::new(at, true);
+            let rates = (found.rate.sqrt(), (FREE * found.rate).sqrt());
+            let all = growing(&matrices, rates, allowed)?;
+            return Ok(confirmed(&matrices, all.into_iter()));
+        }
+        let rates = spectrum.clusters.iter().flat_map(|own| &own.values);
+        let growing = rates.filter(|s| s.re > GROWS * s.norm()).map(|s| s.re);
+        Ok(growing.chain(spectrum.diverging).reduce(f64::max))
+    }
+
     fn sought(
         &self,
         found: &State<f64>,
@@ -170,7 +195,10 @@ impl Solver<'_> {
             let own = lowest(&matrices, scales.clone(), (count, allowed))?;
             let there = own.values.len();
             let diverging = match turning {
-                Some(_) => confirmed(&matrices, &own.diverging),
+                Some(_) => {
+                    let real = |&rate: &f64| Complex64::new(rate, 0.0);
+                    confirmed(&matrices, own.diverging.iter().map(real))
+                }
                 None => None,
             };
             if own.all && there < asked && all_needed && diverging.is_none() {

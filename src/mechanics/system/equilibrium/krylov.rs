@@ -260,9 +260,22 @@ fn search(
 /// Singular equations.
 pub(super) fn growth(
     matrices: &Matrices,
-    (shift, least): (f64, f64),
+    rates: (f64, f64),
     allowed: usize,
 ) -> Result<Option<f64>, AssemblyFailure> {
+    let all = growing(matrices, rates, allowed)?;
+    Ok(all.iter().map(|s| s.re).reduce(f64::max))
+}
+
+/// The rates of all these motions that grow, by size, without the conjugate ones.
+///
+/// # Errors
+/// Singular equations.
+pub(super) fn growing(
+    matrices: &Matrices,
+    (shift, least): (f64, f64),
+    allowed: usize,
+) -> Result<Vec<Complex64>, AssemblyFailure> {
     let factors = (matrices.factors(shift)).map_err(|_| AssemblyFailure::Singular)?;
     let mut space = Space {
         matrices,
@@ -274,7 +287,8 @@ pub(super) fn growth(
         most: 2 * allowed,
     };
     space.grow((2 * allowed).min(LARGEST));
-    let rates = space.rates().ok_or(AssemblyFailure::Singular)?.into_iter();
-    let growing = rates.filter(|s| s.norm() > least && s.re > GROWS * s.norm());
-    Ok(growing.map(|s| s.re).reduce(f64::max))
+    let mut all = space.rates().ok_or(AssemblyFailure::Singular)?;
+    all.retain(|s| s.norm() > least && s.im >= 0.0 && s.re > GROWS * s.norm());
+    all.sort_by(|a, b| a.norm().total_cmp(&b.norm()));
+    Ok(all)
 }

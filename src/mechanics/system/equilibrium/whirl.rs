@@ -13,7 +13,6 @@
 use super::critical::Machine;
 use super::damped::Spectrum;
 use super::equations::State;
-use super::krylov::GROWS;
 use super::turning::Turning;
 use super::{KnownStarts, Solver, Sought, WantedModes, with_solution, without_spin};
 use crate::math::{Complex64, Vec3};
@@ -55,7 +54,8 @@ pub struct MachineMode {
 pub struct MachineModes {
     /// The modes, the lowest |s| first.
     pub modes: Vec<MachineMode>,
-    /// The fastest growth among them and among motions of their sizes that do not oscillate \[1/s\]; `None` if none grows.
+    /// The fastest growth of a motion \[1/s\], of machines with many coordinates among these modes and motions of their sizes that do
+    /// not oscillate; `None` if none grows.
     pub growth: Option<f64>,
 }
 
@@ -79,10 +79,8 @@ pub fn modes_of_machine(
             ..WantedModes::default()
         };
         let spectrum = solver.spectrum(found, &wanted, (true, false))?;
-        let rates = spectrum.clusters.iter().flat_map(|own| &own.values);
-        let growing = rates.filter(|s| s.re > GROWS * s.norm()).map(|s| s.re);
         Ok(MachineModes {
-            growth: growing.chain(spectrum.diverging).reduce(f64::max),
+            growth: solver.growth_in_rotation(found, &spectrum)?,
             modes: solver.machine_modes(found, &spectrum),
         })
     })
