@@ -93,15 +93,15 @@ impl Spectrum {
     }
 }
 
-/// The fastest growth of these rates that are eigenvalues, and no round-off of motions without inertia.
+/// The fastest growth of these rates that are eigenvalues, and no round-off: neither of motions without inertia nor of undamped ones.
 fn confirmed(matrices: &Matrices, rates: impl Iterator<Item = Complex64>) -> Option<f64> {
-    let is_one = |rate: &Complex64| {
-        let found = clusters(matrices, &[*rate]);
-        let near = |s: &Complex64| (s - rate).norm() <= NEAR * rate.norm();
-        found.is_ok_and(|own| own.iter().flat_map(|own| &own.values).all(near))
+    let growth = |rate: Complex64| {
+        let found = clusters(matrices, &[rate]).ok()?;
+        let mut exact = found.iter().flat_map(|own| &own.values);
+        let grows = |s: &Complex64| s.re > GROWS * s.norm() && (s - rate).norm() <= NEAR * s.norm();
+        exact.all(grows).then_some(rate.re)
     };
-    let lowest = rates.take(MOST_GROWING);
-    lowest.filter(is_one).map(|s| s.re).reduce(f64::max)
+    rates.take(MOST_GROWING).filter_map(growth).reduce(f64::max)
 }
 
 /// Frequencies of rates \[Hz\], the size of the last one in its place: beyond it there are others of any.
