@@ -151,6 +151,16 @@ fn rolling(shape: Value, on_hills: bool) -> Problem {
     }))
 }
 
+/// Time of one of so many steps \[µs\], and that of a gradient relative to the run.
+fn cost(problem: &Problem, steps: f64) -> Result<[f64; 2], SimulationError> {
+    let x = problem.start();
+    let (seconds, at) = fastest(5, || Analysis::new(problem).at(&x));
+    let at = at?;
+    let (gradient, found) = fastest(5, || at.gradients(&[0]));
+    found?;
+    Ok([1e6 * seconds / steps, gradient / seconds])
+}
+
 fn main() -> Result<(), SimulationError> {
     println!(
         "a body that rolls, 500 steps of dop853:\nshape         plane: us/step  gradient/run  hills: us/step  gradient/run"
@@ -173,16 +183,8 @@ fn main() -> Result<(), SimulationError> {
         print!("{name:12}");
         for on_hills in [false, true] {
             let problem = rolling(shape.clone(), on_hills);
-            let x = problem.start();
-            let (seconds, at) = fastest(5, || Analysis::new(&problem).at(&x));
-            let at = at?;
-            let (gradient, found) = fastest(5, || at.gradients(&[0]));
-            found?;
-            print!(
-                " {:14.1} {:13.2}",
-                1e6 * seconds / 500.0,
-                gradient / seconds
-            );
+            let [step, ratio] = cost(&problem, 500.0)?;
+            print!(" {step:14.1} {ratio:13.2}");
         }
         println!();
     }
@@ -191,16 +193,8 @@ fn main() -> Result<(), SimulationError> {
     for (what, across) in [("planar", 0.0), ("spatial", 0.04)] {
         for points in [0, 4, 10, 20] {
             let problem = leg(points, across);
-            let x = problem.start();
-            let (seconds, at) = fastest(5, || Analysis::new(&problem).at(&x));
-            let at = at?;
-            let (gradient, found) = fastest(5, || at.gradients(&[0]));
-            found?;
-            println!(
-                "{what:8} {points:6} {:8.1} {:13.2}",
-                1e6 * seconds / 400.0,
-                gradient / seconds
-            );
+            let [step, ratio] = cost(&problem, 400.0)?;
+            println!("{what:8} {points:6} {step:8.1} {ratio:13.2}");
         }
     }
     println!(

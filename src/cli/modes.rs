@@ -76,25 +76,23 @@ pub(super) fn json(told: &ToldModes) -> Map<String, Value> {
         }
         own
     };
-    let list = |own: &MachineModes| own.modes.iter().map(one).collect::<Vec<Value>>();
-    let mut all = Map::new();
-    if let Some(speed) = told.speed {
-        all.insert("speed".to_owned(), json!(speed));
-    }
-    all.insert("modes".to_owned(), json!(list(&told.modes)));
-    if let Some(rate) = told.modes.growth {
-        all.insert("growth".to_owned(), json!(rate));
-    }
+    let at = |speed: Option<f64>, own: &MachineModes| {
+        let mut all = Map::new();
+        if let Some(speed) = speed {
+            all.insert("speed".to_owned(), json!(speed));
+        }
+        let list: Vec<Value> = own.modes.iter().map(one).collect();
+        all.insert("modes".to_owned(), json!(list));
+        if let Some(rate) = own.growth {
+            all.insert("growth".to_owned(), json!(rate));
+        }
+        all
+    };
+    let mut all = at(told.speed, &told.modes);
     if !told.diagram.is_empty() {
         let diagram = told.diagram.iter();
-        let diagram: Vec<Value> = diagram
-            .map(|(speed, modes)| {
-                let mut own = json!({"speed": speed, "modes": list(modes)});
-                if let Some(rate) = modes.growth {
-                    own["growth"] = json!(rate);
-                }
-                own
-            })
+        let diagram: Vec<Map<String, Value>> = diagram
+            .map(|(speed, modes)| at(Some(*speed), modes))
             .collect();
         all.insert("campbell".to_owned(), json!(diagram));
     }

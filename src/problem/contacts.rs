@@ -110,14 +110,19 @@ pub(super) fn spheres(contact: &WrittenContact, half: &Vector) -> usize {
 
 /// The width of the onset of a contact whose materials are given.
 pub(super) fn default_width(contact: &WrittenContact) -> Quantity {
-    let radius = match &contact.surface {
+    Quantity::fixed(radius_of_hertz(contact, |own| own.value) * OF_RADIUS)
+}
+
+/// R of a sphere on a plane or sphere, 1/R = Σ 1 / R_i.
+fn radius_of_hertz<S: Scalar>(contact: &WrittenContact, get: impl Fn(&Quantity) -> S) -> S {
+    let radius = get(&contact.radius);
+    match &contact.surface {
         WrittenSurface::Sphere { radius: other } => {
-            let [a, b] = [contact.radius.value, other.value];
-            a * b / (a + b)
+            let other = get(other);
+            radius * other / (radius + other)
         }
-        _ => contact.radius.value,
-    };
-    Quantity::fixed(radius * OF_RADIUS)
+        _ => radius,
+    }
 }
 
 /// The law of a contact; by Hertz, if its materials are given: F = 4/3 E √R δ^1.5 with 1/E = Σ (1 − ν²) / E_i and 1/R = Σ 1 / R_i
@@ -131,14 +136,7 @@ fn law<S: Scalar>(assembly: &Assembly<S>, contact: &WrittenContact) -> NormalLaw
             let ratio = get(&own.poisson);
             (S::one() - ratio * ratio) / get(&own.young)
         };
-        let radius = get(&contact.radius);
-        let radius = match &contact.surface {
-            WrittenSurface::Sphere { radius: other } => {
-                let other = get(other);
-                radius * other / (radius + other)
-            }
-            _ => radius,
-        };
+        let radius = radius_of_hertz(contact, get);
         let compliance = compliance(&names[0]) + compliance(&names[1]);
         (radius.sqrt() * (4.0 / 3.0) / compliance, radius)
     });

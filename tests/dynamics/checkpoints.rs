@@ -1,7 +1,7 @@
 //! Gradients with repeated steps equal those with stored steps, and repeat as many as binomial
 //! checkpointing says.
 
-use crate::reference::documents::problem;
+use crate::reference::documents::{problem, read};
 use flexbody_driver::evaluate::Evaluated;
 use flexbody_driver::integration::Integration;
 use flexbody_mechanics::adjoint::gradients;
@@ -10,17 +10,9 @@ use flexbody_mechanics::integrate::schedule::{Schedule, advances};
 use flexbody_mechanics::integrate::{
     MEMORY, Method, Samples, Settings, Spacing, Start, Tape, Trajectory, simulate,
 };
-use serde_json::Value;
-use std::path::Path;
-
-fn document(path: &str) -> Value {
-    let path = Path::new(env!("CARGO_MANIFEST_DIR")).join(path);
-    let text = std::fs::read_to_string(path).expect("a problem file");
-    serde_json::from_str(&text).expect("JSON")
-}
 
 fn scene(path: &str) -> Scene<f64> {
-    let problem = problem(&document(path));
+    let problem = problem(&read(path));
     problem.scene(&problem.start())
 }
 
@@ -38,7 +30,7 @@ fn difference(a: &Scene<f64>, b: &Scene<f64>) -> f64 {
 /// Scenes and durations \[s\]: with a tree, with loops, with driven joints, and with bodies so
 /// different that sparse LU is used.
 fn scenes() -> Vec<(Scene<f64>, f64)> {
-    let mut unlike = document("problems/extreme/double_pendulum.json");
+    let mut unlike = read("problems/extreme/double_pendulum.json");
     let bodies = unlike["bodies"].as_object_mut().expect("bodies");
     let first = bodies.values_mut().next().expect("a body");
     first["mass"] = json!(1e-7);
@@ -193,7 +185,7 @@ fn durations_and_events_are_differentiated_alike() {
         "problems/trebuchet_release_time.json",
         "problems/trebuchet_release_angle.json",
     ] {
-        let mut problem = problem(&document(path));
+        let mut problem = problem(&read(path));
         let which: Vec<usize> = (0..problem.function_names.len()).collect();
         let start = problem.start();
         let near: Vec<f64> = start.iter().map(|x| x * 1.001).collect();

@@ -1,6 +1,6 @@
 //! Samples of stored steps are those of repeated ones, and cost no step.
 
-use crate::reference::documents::problem;
+use crate::reference::documents::{problem, read};
 use flexbody_driver::integration::Integration;
 use flexbody_mechanics::adjoint::gradients;
 use flexbody_mechanics::functions::Scene;
@@ -8,13 +8,6 @@ use flexbody_mechanics::integrate::{
     MEMORY, Method, Samples, Settings, Spacing, Trajectory, simulate,
 };
 use serde_json::Value;
-use std::path::Path;
-
-fn document(path: &str) -> Value {
-    let path = Path::new(env!("CARGO_MANIFEST_DIR")).join(path);
-    let text = std::fs::read_to_string(path).expect("a problem file");
-    serde_json::from_str(&text).expect("JSON")
-}
 
 /// A disc that winds up a torsion spring by several turns while a pendulum hangs from its rim.
 fn winding() -> Value {
@@ -48,7 +41,7 @@ fn scenes() -> Vec<(Scene<f64>, f64)> {
         ("problems/flexible/spin_up.json", 0.5),
     ]
     .map(|(path, duration)| {
-        let problem = problem(&document(path));
+        let problem = problem(&read(path));
         (problem.scene(&problem.start()), duration)
     })
     .to_vec();
@@ -164,7 +157,7 @@ fn a_motion_without_stored_steps_has_no_other_samples() {
 #[test]
 fn sums_cost_one_motion() {
     for file in ["problems/trebuchet.json", "problems/bump_stop.json"] {
-        let problem = problem(&document(file));
+        let problem = problem(&read(file));
         let mut scene = problem.scene(&problem.start());
         let mut whole = Integration::new(&problem, &scene, None, false);
         let (run, _) = whole.simulate(&mut scene).expect("runs");

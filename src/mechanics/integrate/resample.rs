@@ -22,19 +22,21 @@ impl Trajectory<f64> {
         if !self.has_cells || steps != (1..self.grid.steps() + 1) {
             return None;
         }
-        self.grid = self.grid.with_cells(cells);
-        let intervals = self.grid.intervals(samples.intervals());
+        let whole = self.grid.with_cells(cells);
+        self.grid = whole.to_grow();
+        let intervals = whole.intervals(samples.intervals());
         self.forget_samples();
         let none = Tape::Explicit(explicit::Tape::none(&self.numbering));
         let mut tape = std::mem::replace(&mut self.tape, none);
         let (own, at) = ((model, &mut self), (samples, &intervals));
         match &mut tape {
             Tape::Explicit(tape) => {
-                tape.block = explicit::samples::sample_again(own, tape, at).ok()?;
+                let steps = (&*tape, &whole);
+                tape.block = explicit::samples::sample_again(own, steps, at).ok()?;
             }
-            Tape::Implicit(tape) => implicit::samples::sample_again(own, tape, at),
+            Tape::Implicit(tape) => implicit::samples::sample_again(own, (tape, &whole), at),
         }
-        self.tape = tape;
+        (self.tape, self.grid) = (tape, whole);
         Some(self)
     }
 

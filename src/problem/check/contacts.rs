@@ -102,7 +102,9 @@ impl Checker<'_> {
                 self.fault(Finding::new(&place, found, "\"half\" or \"wheel\"").of_key());
             }
             if contact.spheres.is_none() && spheres(contact, half) > MOST as usize {
-                let expected = "\"spheres\": how many touch, as more than 100 would be no further apart than the radius";
+                let expected = format!(
+                    "\"spheres\": how many touch, as more than {MOST} would be no further apart than the radius"
+                );
                 self.fault(Finding::new(&place, "a long thin capsule", expected));
             }
             if contact.radius.value == 0.0 && !matches!(contact.surface, Surface::Plane { .. }) {

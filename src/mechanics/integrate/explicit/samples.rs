@@ -3,7 +3,7 @@
 use super::record::{Node, NodeView};
 use super::step::{StepFailure, Stepper};
 use super::tape::{Block, Tape};
-use crate::integrate::grid::{SamplePlace, place};
+use crate::integrate::grid::{Grid, SamplePlace, place};
 use crate::integrate::quadrature::{self, Intervals, Samples};
 use crate::integrate::replay::Block as _;
 use crate::integrate::trajectory::Trajectory;
@@ -46,14 +46,14 @@ pub fn sample<S: SolveScalar>(
     Ok(())
 }
 
-/// Samples the steps of `tape`, which hold the whole motion of `run`, anew; `run` has only its start. Returns the tape with the
+/// Samples the steps of `tape` anew, to which the grid of `run` grows from its start alone. Returns them with the
 /// stages of the dense output where samples need them.
 ///
 /// # Errors
 /// As [`sample`].
 pub fn sample_again(
     (model, run): (&Model<f64>, &mut Trajectory<f64>),
-    tape: &Tape<f64>,
+    (tape, whole): (&Tape<f64>, &Grid),
     (samples, intervals): (Samples, &Intervals),
 ) -> Result<Block<f64>, StepFailure> {
     let numbering = run.numbering.clone();
@@ -62,8 +62,6 @@ pub fn sample_again(
     let steps = tape.block.steps();
     block.restart(0);
     block.reserve(steps.len());
-    let whole = run.grid.clone();
-    run.grid = whole.to_grow();
     let mut next = 1;
     for k in steps {
         if let Some(rows) = whole.left_out(k) {
@@ -84,7 +82,6 @@ pub fn sample_again(
         stepper.data.dense = run.places[before..].iter().any(inside);
         block.push(ends, stepper.data.view());
     }
-    run.grid = whole;
     run.counts.factorisations += stepper.field.factorisations;
     run.counts.solves += stepper.field.solves;
     Ok(block)

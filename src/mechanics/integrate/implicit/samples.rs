@@ -4,7 +4,7 @@ use super::Stage;
 use super::predict::dense;
 use super::radau::Scheme;
 use super::tape::Tape;
-use crate::integrate::grid::{SamplePlace, place};
+use crate::integrate::grid::{Grid, SamplePlace, place};
 use crate::integrate::quadrature::{self, Due, Intervals, Samples};
 use crate::integrate::replay::Block as _;
 use crate::integrate::trajectory::Trajectory;
@@ -47,10 +47,10 @@ pub fn sample<S: SolveScalar>(
     }
 }
 
-/// Samples the steps of `tape`, which hold the whole motion of `run`, anew; `run` has only its start.
+/// Samples the steps of `tape` anew, to which the grid of `run` grows from its start alone.
 pub fn sample_again(
     (model, run): (&Model<f64>, &mut Trajectory<f64>),
-    tape: &Tape<f64>,
+    (tape, whole): (&Tape<f64>, &Grid),
     (samples, intervals): (Samples, &Intervals),
 ) {
     let numbering = run.numbering.clone();
@@ -58,8 +58,6 @@ pub fn sample_again(
     let new = || Stage::zero(&numbering);
     let (mut from, mut inside) = (new(), new());
     let mut stages: Vec<Stage<f64>> = (0..scheme.stages()).map(|_| new()).collect();
-    let whole = run.grid.clone();
-    run.grid = whole.to_grow();
     let mut next = 1;
     for k in tape.block.steps() {
         tape.block.read_end(k - 1, &mut from);
@@ -70,5 +68,4 @@ pub fn sample_again(
         let all = (&from, &stages[..count]);
         sample(run, &scheme, all, (samples, due), &mut inside);
     }
-    run.grid = whole;
 }

@@ -194,13 +194,10 @@ impl Solver<'_> {
         let (values, diverging) = loop {
             let own = lowest(&matrices, scales.clone(), (count, allowed))?;
             let there = own.values.len();
-            let diverging = match turning {
-                Some(_) => {
-                    let real = |&rate: &f64| Complex64::new(rate, 0.0);
-                    confirmed(&matrices, own.diverging.iter().map(real))
-                }
-                None => None,
-            };
+            let diverging = turning.and_then(|_| {
+                let real = |&rate: &f64| Complex64::new(rate, 0.0);
+                confirmed(&matrices, own.diverging.iter().map(real))
+            });
             if own.all && there < asked && all_needed && diverging.is_none() {
                 return none(format!("mode {asked} is asked for, and there are {there}"));
             }

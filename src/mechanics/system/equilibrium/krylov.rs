@@ -56,7 +56,21 @@ struct Space<'a> {
     most: usize,
 }
 
-impl Space<'_> {
+impl<'a> Space<'a> {
+    /// An empty space of a machine whose joints allow `allowed` independent motions.
+    fn new(matrices: &'a Matrices, shift: f64, allowed: usize) -> Result<Self, AssemblyFailure> {
+        let factors = (matrices.factors(shift)).map_err(|_| AssemblyFailure::Singular)?;
+        Ok(Self {
+            matrices,
+            factors,
+            shift,
+            basis: Vec::new(),
+            columns: Vec::new(),
+            drawn: 0,
+            most: 2 * allowed,
+        })
+    }
+
     fn product(&mut self, pair: &[f64]) -> Vec<f64> {
         let (n, order) = (self.matrices.unknowns, self.matrices.order());
         let padded = |x: &[f64]| {
@@ -211,16 +225,7 @@ fn search(
     (shift, sizes): (f64, &Range<f64>),
     (count, allowed): (usize, usize),
 ) -> Result<Found, AssemblyFailure> {
-    let factors = (matrices.factors(shift)).map_err(|_| AssemblyFailure::Singular)?;
-    let mut space = Space {
-        matrices,
-        factors,
-        shift,
-        basis: Vec::new(),
-        columns: Vec::new(),
-        drawn: 0,
-        most: 2 * allowed,
-    };
+    let mut space = Space::new(matrices, shift, allowed)?;
     let mut dimension = DIMENSION * (count + STARTS);
     let mut before: Vec<Complex64> = Vec::new();
     loop {
@@ -276,16 +281,7 @@ pub(super) fn growing(
     (shift, least): (f64, f64),
     allowed: usize,
 ) -> Result<Vec<Complex64>, AssemblyFailure> {
-    let factors = (matrices.factors(shift)).map_err(|_| AssemblyFailure::Singular)?;
-    let mut space = Space {
-        matrices,
-        factors,
-        shift,
-        basis: Vec::new(),
-        columns: Vec::new(),
-        drawn: 0,
-        most: 2 * allowed,
-    };
+    let mut space = Space::new(matrices, shift, allowed)?;
     space.grow((2 * allowed).min(LARGEST));
     let mut all = space.rates().ok_or(AssemblyFailure::Singular)?;
     all.retain(|s| s.norm() > least && s.im >= 0.0 && s.re > GROWS * s.norm());

@@ -57,6 +57,24 @@ fn lowest<S: Scalar>(axis: &Vec3<S>, at: &Acting<S>, normal: &Vec3<S>) -> Lowest
     }
 }
 
+impl<S: Scalar> Touch<S> {
+    /// That of a sphere of the radius of the contact with this centre, distance of it from a surface, and normal there.
+    fn of_sphere(
+        contact: &Contact<S>,
+        (centre, distance, normal): (Vec3<S>, S, Vec3<S>),
+        on: On<S>,
+    ) -> Self {
+        Self {
+            normal,
+            square: S::one(),
+            is_crowned: false,
+            penetration: contact.radius - distance,
+            place: centre - normal * contact.radius,
+            on,
+        }
+    }
+}
+
 /// The contact in a motion.
 pub(super) fn touch<S: Scalar>(contact: &Contact<S>, at: &Acting<S>) -> Touch<S> {
     match &contact.surface {
@@ -88,17 +106,11 @@ fn on_plane<S: Scalar>(contact: &Contact<S>, normal: &Vec3<S>, at: &Acting<S>) -
     };
     let x = centre - o;
     let distance = normal.dot(&x);
-    Touch {
-        normal,
-        square: S::one(),
-        is_crowned: false,
-        penetration: contact.radius - distance,
-        place: centre - normal * contact.radius,
-        on: match wheel {
-            Some(own) => On::Wheel(x, own),
-            None => On::Plane(x),
-        },
-    }
+    let on = match wheel {
+        Some(own) => On::Wheel(x, own),
+        None => On::Plane(x),
+    };
+    Touch::of_sphere(contact, (centre, distance, normal), on)
 }
 
 fn on_field<S: Scalar>(
@@ -119,14 +131,7 @@ fn on_field<S: Scalar>(
             (On::Field(foot), normal, distance, at.a.point())
         }
     };
-    Touch {
-        normal,
-        square: S::one(),
-        is_crowned: false,
-        penetration: contact.radius - distance,
-        place: centre - normal * contact.radius,
-        on,
-    }
+    Touch::of_sphere(contact, (centre, distance, normal), on)
 }
 
 /// Whether the contact cannot touch: the centre is far from a surface whose nearest point takes time to find.
