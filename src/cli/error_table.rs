@@ -42,6 +42,10 @@ pub(crate) fn table(problem: &Problem, found: &[error::FunctionError]) -> String
 /// Adds the estimated errors of a function and of its gradient to its entry.
 pub(super) fn add_errors(own: &mut Value, problem: &Problem, found: &error::FunctionError) {
     own["error"] = json!(found.value.error);
+    if let Some(maximum) = &found.maximum {
+        let between_samples = own["true_maximum"]["error"].as_f64().unwrap_or(0.0);
+        own["true_maximum"]["error"] = json!(maximum.error + between_samples);
+    }
     let gradient = problem.variables.iter().zip(&found.gradient);
     let gradient = gradient.map(|(variable, derivative)| {
         let both = json!({"value": derivative.value, "error": derivative.error});

@@ -226,7 +226,7 @@ pub(super) fn summary(
                 true => write!(text, "  true maximum {value:.9e}{unit} (± {error:.0e}"),
                 false => write!(
                     text,
-                    "  true maximum {value:.9e}{unit} at t = {time:.6} s (± {error:.0e}"
+                    "  true maximum {value:.9e}{unit} at t = {time:.6} s (between samples ± {error:.0e}"
                 ),
             };
             let at = &simulation.at;

@@ -12,7 +12,7 @@ use super::check::{complex_step, own_size};
 use super::composed::infinitesimal;
 use super::evaluate::{Derivative, Evaluated};
 use super::event;
-use super::frozen::{complex_design, complex_motion, settings};
+use super::frozen::{Stored, complex_design, complex_motion, settings};
 use super::not_finite::{body, variable};
 use super::optimise::Optimisation;
 use super::statics::{self, StaticDesign, StaticsFailure};
@@ -192,7 +192,7 @@ fn certified(
         None => f64::NAN,
     };
     let event = (at.run.duration, rate);
-    let complex = complex_step(problem, &settings, event, &at.x, direction)?;
+    let complex = complex_step(problem, (&settings, Stored::Steps), event, &at.x, direction)?;
     cost.complex_runs += 1;
     for (f, size) in sizes.iter_mut().enumerate() {
         let own = sum(&gradients[f], direction, |d, by| (d.value * by).abs());
@@ -308,7 +308,8 @@ fn sums_of_terms(
     at: &Evaluated,
     direction: &[f64],
 ) -> Result<Vec<f64>, IntegrationFailure> {
-    let (scene, run) = complex_motion(problem, settings, event, &complex_design(&at.x, direction))?;
+    let moved = complex_design(&at.x, direction);
+    let (scene, run) = complex_motion(problem, (settings, Stored::Motion), event, &moved)?;
     let terms = |f: &Function<Complex64>| f.terms_over_motion(&scene.model, &run) / COMPLEX_STEP;
     let mut all: Vec<f64> = scene.functions.iter().map(terms).collect();
     for f in all.len()..problem.function_names.len() {
@@ -382,7 +383,7 @@ fn differing(
     for (i, derivative) in gradient.iter().enumerate() {
         let only = |j: usize| if i == j { direction[i] } else { 0.0 };
         let along: Vec<f64> = (0..x.len()).map(only).collect();
-        let found = complex_step(problem, settings, event, x, &along)?;
+        let found = complex_step(problem, (settings, Stored::Motion), event, x, &along)?;
         cost.complex_runs += 1;
         let by = (found.derivatives[f] - derivative.value * direction[i]).abs();
         if most.is_none_or(|(largest, _)| by > largest) {

@@ -3,7 +3,7 @@
 use super::composed::infinitesimal;
 use super::evaluate::Evaluated;
 use super::event;
-use super::frozen::{complex_design, complex_motion};
+use super::frozen::{Stored, complex_design, complex_motion};
 use super::integration::Integration;
 use crate::functions::seen::SeenPart;
 use crate::functions::series::Series;
@@ -100,12 +100,17 @@ pub fn check(problem: &Problem, x: &[f64]) -> Result<Vec<CheckedDerivative>, Int
         Some(_) => event::rate(&in_use.scene, settings, duration)?,
         None => f64::NAN,
     };
+    // The adjoint follows the first of these motions.
     let steps: Vec<ComplexStep> = (0..x.len())
         .into_par_iter()
         .map(|i| {
             let unit = |j: usize| if i == j { 1.0 } else { 0.0 };
             let direction: Vec<f64> = (0..x.len()).map(unit).collect();
-            complex_step(problem, settings, (duration, rate), x, &direction)
+            let stored = match i {
+                0 => Stored::Steps,
+                _ => Stored::Motion,
+            };
+            complex_step(problem, (settings, stored), (duration, rate), x, &direction)
         })
         .collect::<Result<_, _>>()?;
     let Some(first) = steps.first() else {
@@ -335,13 +340,13 @@ pub(super) struct ComplexStep {
 /// Im f(x + i h d)/h of every function f; `event` is when the event comes at x, and how fast.
 pub(super) fn complex_step(
     problem: &Problem,
-    settings: &Settings,
+    with: (&Settings, Stored),
     event: (f64, f64),
     x: &[f64],
     direction: &[f64],
 ) -> Result<ComplexStep, IntegrationFailure> {
     let moved = complex_design(x, direction);
-    let (scene, run) = complex_motion(problem, settings, event, &moved)?;
+    let (scene, run) = complex_motion(problem, with, event, &moved)?;
     let value = |f: &Function<Complex64>| f.evaluate(&scene.model, &run).value;
     let values: Vec<Complex64> = scene.functions.iter().map(value).collect();
     Ok(ComplexStep {

@@ -3,7 +3,7 @@
 use super::analysed::{Analysed, AnalysisFailure, Simulated};
 use super::evaluate::{Derivative, Evaluated};
 use super::event;
-use super::frozen::{complex_design, complex_motion, settings};
+use super::frozen::{Stored, complex_design, complex_motion, settings};
 use super::statics::{StaticDesign, StaticsFailure};
 use crate::functions::misfit::residuals;
 use crate::functions::series::{Measured, Series};
@@ -97,8 +97,8 @@ pub fn of_motion(
         let unit = |j: usize| if i == j { 1.0 } else { 0.0 };
         let along: Vec<f64> = (0..n).map(unit).collect();
         let event = (at.run.duration, rate);
-        let (scene, run) =
-            complex_motion(problem, &settings, event, &complex_design(&at.x, &along))?;
+        let moved = complex_design(&at.x, &along);
+        let (scene, run) = complex_motion(problem, (&settings, Stored::Motion), event, &moved)?;
         let slope = |r: Complex64| r.im / COMPLEX_STEP;
         let own = misfits.iter().map(|&(f, _)| {
             let own = residuals(series_of(&scene, f), &scene.model, &run)?;

@@ -18,7 +18,7 @@ use crate::composed::{Derivative, infinitesimal};
 use crate::error::{Estimate, FunctionError, halved};
 use crate::evaluate::Evaluated;
 use crate::event::{self, Admit};
-use crate::frozen::{complex_design, complex_motion, settings};
+use crate::frozen::{Stored, complex_design, complex_motion, settings};
 use crate::integrate::{IntegrationFailure, Settings, WorkCounts};
 use crate::integration::Integration;
 use crate::math::{Complex64, scalar::COMPLEX_STEP};
@@ -259,7 +259,7 @@ fn steps(all: &InCases<Analysed>) -> Result<Vec<Steps>, AnalysisFailure> {
 /// Derivatives of all functions along a direction by a complex step through all phases, and these in real numbers.
 fn complex_step(
     (problem, cases): (&Problem, &Arc<Cases>),
-    known: &[Steps],
+    (known, stored): (&[Steps], Stored),
     (x, direction): (&[f64], &[f64]),
 ) -> Result<(Vec<f64>, InCases<Analysed>), AnalysisFailure> {
     let design = complex_design(x, direction);
@@ -267,7 +267,7 @@ fn complex_step(
     let mut values = vec![Complex64::from(0.0); cases.places.len()];
     let mut phases = Vec::new();
     for (p, (case, (settings, event))) in cases.list.iter().zip(known).enumerate() {
-        let found = complex_motion(&case.problem, settings, *event, &whole);
+        let found = complex_motion(&case.problem, (settings, stored), *event, &whole);
         let (scene, run) = found.map_err(|failure| told(case, failure.into()))?;
         let own = values.iter_mut().zip(&cases.places);
         for (value, &(_, f)) in own.filter(|(_, place)| place.0 == p) {
@@ -308,7 +308,11 @@ pub(in crate::analysed) fn check(
     let along = |i: usize| {
         let unit = |j: usize| if i == j { 1.0 } else { 0.0 };
         let direction: Vec<f64> = (0..x.len()).map(unit).collect();
-        complex_step((problem, cases), &known, (x, &direction))
+        let stored = match i {
+            0 => Stored::Steps,
+            _ => Stored::Motion,
+        };
+        complex_step((problem, cases), (&known, stored), (x, &direction))
     };
     let found: Vec<(Vec<f64>, InCases<Analysed>)> = (0..x.len())
         .into_par_iter()
@@ -355,7 +359,8 @@ pub(crate) fn directional(
 ) -> Result<Vec<[f64; 4]>, AnalysisFailure> {
     let which: Vec<usize> = (0..problem.function_names.len()).collect();
     let known = steps(&repeated(problem, all))?;
-    let (complex, same) = complex_step((problem, &all.cases), &known, (&all.x, direction))?;
+    let known = (&known[..], Stored::Steps);
+    let (complex, same) = complex_step((problem, &all.cases), known, (&all.x, direction))?;
     let (adjoint, _) = derivatives(&same, &which)?;
     let one = |&f: &usize| {
         let along = || adjoint[f].iter().zip(direction);

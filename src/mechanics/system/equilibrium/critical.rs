@@ -45,6 +45,8 @@ const STAGNANT: f64 = 1e-11;
 const IMAGINARY: f64 = 1e-7;
 /// Part of the derivatives of a pair by which their matrix may differ from a multiple of the unit matrix.
 const ALIKE: f64 = 1e-8;
+/// A relative change of the speed below this part of the least of a parameter is round-off.
+const ROUND_OFF: f64 = 1e-11;
 
 /// A critical speed.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -107,9 +109,25 @@ pub(super) fn critical_speed<S: Scalar>(
     let count = own.values.len();
     let mean = changes.trace() / Complex64::new(count as f64, 0.0);
     let rest = &changes - DMatrix::identity(count, count) * mean;
-    out.divides = rest.norm() > ALIKE * changes.norm();
+    let least = ROUND_OFF * speed * least_change(model, turning);
+    out.divides = rest.norm() > (ALIKE * changes.norm()).max(least);
     out.speed += S::of_infinitesimal(mean.re);
     Ok(out)
+}
+
+/// The least relative infinitesimal part of the parameters that have one. The largest may be that of the round-off of zero.
+fn least_change<S: Scalar>(model: &Model<S>, turning: &Turning<S>) -> f64 {
+    let mut least = f64::INFINITY;
+    let mut look = |x: S| {
+        let change = (x.infinitesimal() / x.re()).abs();
+        if change > 0.0 {
+            least = least.min(change);
+        }
+        x.re()
+    };
+    model.map(&mut look);
+    turning.at_speed(S::zero()).map(&mut look);
+    if least.is_finite() { least } else { 0.0 }
 }
 
 /// A speed, and the motions that it excites.
