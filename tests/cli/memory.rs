@@ -40,6 +40,71 @@ fn an_optimum_in_little_memory_is_the_same() {
     assert!(told["stretch"].is_null());
 }
 
+/// A pendulum with a table of torques and a spring, by Radau IIA with steps that follow a tolerance.
+fn wound_pendulum(tolerance: f64) -> Value {
+    let joint = json!({"between": ["p", "ground"], "at": [0, 0, 0], "axis": [0, 0, 1],
+        "start": {"turn": {"angle": -0.24, "rate": 3.6}}});
+    let torque = json!({"table": {"times": [0, 0.12, 0.34, 1.46], "values": [-43, 5, -58, -21],
+        "interpolation": "linear"}});
+    json!({
+        "version": 1, "name": "scene", "gravity": [0, -9.81, 0],
+        "bodies": {"p": {"mass": 9.5, "inertia": {"xx": 0.3, "yy": 0.3, "zz": 0.3},
+            "points": {"a": [-0.7, 0, 0]}, "place": {"put": "a", "at": [0, 0, 0]}}},
+        "joints": {"j": {"revolute": joint}},
+        "loads": {
+            "spring": {"torsion_spring": {"joint": "j", "stiffness": 20, "damping": 0.25}},
+            "torque": {"torque": {"body": "p", "direction": [0, 0, 1], "magnitude": torque}}
+        },
+        "simulation": {"duration": 1.46, "tolerance": tolerance, "method": {"radau": {"stages": 3}}},
+        "functions": {
+            "energy": {"integral": {"energy": "kinetic"}},
+            "rate": {"mean_square": {"of": {"angle_rate": {"joint": "j"}}, "during": [0.05, 0.36]}},
+            "fast": {"ks": {"rho": 40, "of": {"speed": {"body": "p"}}}}
+        },
+        "variables": {
+            "m": {"path": "/bodies/p/mass", "lower": 1, "upper": 90},
+            "k": {"path": "/loads/spring/torsion_spring/stiffness", "lower": 2, "upper": 200}
+        }
+    })
+}
+
+/// The adjoint and the complex step are compared on one motion, whose steps are stored whatever the memory of gradients.
+#[test]
+fn gradients_are_checked_on_one_motion_in_any_memory() {
+    let at = scratch();
+    write(at.path(), &wound_pendulum(1e-7));
+    for memory in ["1KB", "100MB"] {
+        let told = expect(0, at.path(), &["check", "scene.json", "--memory", memory]);
+        assert!(told.out.contains("0 above"), "{memory}: {}", told.out);
+    }
+}
+
+/// The error of a true maximum contains that of the steps.
+#[test]
+fn a_true_maximum_has_the_error_of_its_motion() {
+    let at = scratch();
+    let maximum = |tolerance: f64| {
+        write(at.path(), &wound_pendulum(tolerance));
+        let told = expect(
+            0,
+            at.path(),
+            &["simulate", "scene.json", "--json", "--error"],
+        );
+        let all = json(&told.out);
+        let own = &all["functions"]["fast"]["true_maximum"];
+        ["value", "error"].map(|key| own[key].as_f64().expect("a number"))
+    };
+    let [exact, _] = maximum(1e-11);
+    for tolerance in [1e-4, 1e-6] {
+        let [value, error] = maximum(tolerance);
+        let off = (value - exact).abs();
+        assert!(
+            off > 1e-12 && error > 0.3 * off && error < 1e-3,
+            "{off} {error}"
+        );
+    }
+}
+
 /// With any memory, a gradient repeats each step at most twenty times, and has the same value.
 #[test]
 fn any_memory_bounds_the_work() {

@@ -15,7 +15,7 @@ use flexbody_mechanics::model::Model;
 use flexbody_mechanics::system::InMotion;
 use flexbody_mechanics::system::bodies::{self, BodyMotion, rates, velocity_of_rates};
 use flexbody_mechanics::system::initial;
-use flexbody_mechanics::system::joints::{self, JointCotangent, RowCotangents, rate_by_position};
+use flexbody_mechanics::system::joints::{self, JointCotangent, RowCotangents, rates_by_position};
 use flexbody_mechanics::system::kkt::SaddlePoint;
 use flexbody_mechanics::system::reaction::ReactionJacobian;
 use flexbody_mechanics::system::side::sides;
@@ -88,8 +88,8 @@ fn rates_by_positions() {
         let (motions, ground) = (case.motions(&case.q, &case.v), BodyMotion::ground());
         let joint = &case.model.joints[0];
         let (a, b) = sides(joint, &motions, &ground, TIME);
-        for (i, row) in joint.rows().enumerate() {
-            let (by_a, by_b) = rate_by_position(row, &a, &b);
+        let mut i = 0;
+        rates_by_position(joint, (&a, &b), |_, by_a, by_b| {
             let mut given = vec![0.0; 12];
             bodies::add6(&mut given[6..], &by_a.position, &by_a.theta);
             if joint.body_b.is_some() {
@@ -101,7 +101,9 @@ fn rates_by_positions() {
             };
             let exact: Vec<f64> = (0..12).map(by).collect();
             case.assert(&format!("rate of row {i} by positions"), &given, &exact);
-        }
+            i += 1;
+        });
+        assert_eq!(i, joint.rows().count());
     }
 }
 

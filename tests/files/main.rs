@@ -17,6 +17,7 @@ mod cases;
 mod circles;
 mod committed_problems;
 mod controllers;
+mod critical_speeds;
 mod damped_modes;
 mod distributed_loads;
 pub mod element_parts;

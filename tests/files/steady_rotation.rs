@@ -3,16 +3,16 @@
 
 use super::damped_modes::pairs;
 use super::machines_at_rest::{fault, rod};
-use crate::reference::documents::{problem as parsed, read, values};
+use crate::reference::documents::{problem as parsed, values};
 use crate::reference::gradients::{gradients_are_exact, gradients_are_slopes};
 use flexbody_driver::check;
 use flexbody_mechanics::system::equilibrium::Whirl;
 use flexbody_problem::Problem;
 use nalgebra::DMatrix;
-use serde_json::{Map, Value};
+use serde_json::Value;
 use std::f64::consts::PI;
 
-fn assert_near(found: &[f64], expected: &[f64], part: f64) {
+pub fn assert_near(found: &[f64], expected: &[f64], part: f64) {
     assert_eq!(found.len(), expected.len());
     for (f, e) in found.iter().zip(expected) {
         assert!((f - e).abs() <= part * e.abs(), "{found:?} {expected:?}");
@@ -523,100 +523,4 @@ fn what_cannot_turn_is_told() {
         },
         &["speeds of a machine that does not turn"],
     );
-}
-
-/// The stiffness of shafts in stretch leaves no round-off in critical speeds and their derivatives.
-#[test]
-fn critical_speeds_of_stiff_shafts_are_exact() {
-    let mut file = read("problems/rotor.json");
-    file["functions"] = json!({
-        "first": {"critical_speed": {"number": 1}},
-        "second": {"critical_speed": {"number": 2}}
-    });
-    file["objective"] = json!({"minimise": "first"});
-    file["constraints"] = json!({});
-    gradients_are_exact(&parsed(&file), &json!("rotor"));
-    let at_start = values(&file);
-    let radius = &mut file["bodies"]["right shaft"]["beam"]["section"]["tube"]["radius"];
-    let above = radius.as_f64().expect("a number").next_up();
-    *radius = json!(above);
-    assert_near(&values(&file), &at_start, 1e-14);
-}
-
-/// A rigid rotor on a ball joint, held by springs in rotational symmetry, has the critical speed √(k / (I_t − I_p)) about any
-/// axis. Its free spin belongs to none.
-#[test]
-fn the_critical_speed_is_the_same_about_oblique_axes() {
-    // Springs of zero tension from the end of the rotor at 0.3 m to a circle of 0.5 m about it.
-    let (mass, along, across, count) = (2.0, 0.02, 0.03, 4);
-    let stiffness = 0.5 * f64::from(count) * 1000.0 * 0.3 * 0.3;
-    let expected = (stiffness / (across + mass * 0.25 - along)).sqrt();
-    let mut file = json!({
-        "version": 1, "name": "rotor", "analysis": "modes", "gravity": [0, 0, 0],
-        "turning": {"axis": [1, 0, 0], "speed": 20},
-        "functions": {"c": {"critical_speed": {"number": 1}}}
-    });
-    for k in 0..12_u32 {
-        let axis = nalgebra::Vector3::new(0.3 + f64::from(k), 1.0 - 0.7 * f64::from(k * k), 0.9);
-        let turn = match k {
-            0 => nalgebra::Rotation3::identity(),
-            _ => nalgebra::Rotation3::new(axis.normalize() * (0.4 * f64::from(k))),
-        };
-        let at = |x: [f64; 3]| {
-            let x = turn * nalgebra::Vector3::from(x);
-            json!([x.x, x.y, x.z])
-        };
-        let rows: Vec<Vec<f64>> = (0..3)
-            .map(|i| (0..3).map(|j| turn[(i, j)]).collect())
-            .collect();
-        file["turning"]["axis"] = at([1.0, 0.0, 0.0]);
-        file["bodies"] = json!({"d": {
-            "mass": mass, "inertia": {"xx": along, "yy": across, "zz": across},
-            "place": {"at": at([0.5, 0.0, 0.0]), "turn": {"matrix": rows}}}});
-        let springs = |from_centre: f64| {
-            let mut all = Map::new();
-            for s in 0..count {
-                let (sin, cos) = (2.0 * PI * f64::from(s) / f64::from(count)).sin_cos();
-                let end = at([0.5 + from_centre, 0.5 * cos, 0.5 * sin]);
-                let spring = json!({
-                    "between": ["d", "ground"], "at": {"a": [from_centre, 0, 0], "b": end},
-                    "rest_length": 0.5, "stiffness": 1000});
-                all.insert(format!("at {from_centre} {s}"), json!({"spring": spring}));
-            }
-            all
-        };
-        file["joints"] = json!({"s": {"spherical": {"between": ["d", "ground"], "at": [0, 0, 0]}}});
-        file["loads"] = Value::Object(springs(-0.2));
-        assert_near(&values(&file), &[expected], 1e-9);
-        // Without the joint, on springs at both ends, it is free along the axis as well.
-        file["joints"] = json!({});
-        let mut both = springs(-0.2);
-        both.extend(springs(0.2));
-        file["loads"] = Value::Object(both);
-        let in_one_plane = f64::from(count) * 1000.0;
-        assert_near(&values(&file), &[(in_one_plane / mass).sqrt()], 1e-9);
-    }
-}
-
-/// The rotor of the problems about oblique axes: its stretch and the motions along the axis have no part in what the rotation
-/// stiffens but round-off, and are no critical speeds.
-#[test]
-fn elastic_rotors_are_the_same_about_oblique_axes() {
-    let rotor = read("problems/rotor.json");
-    let mut file = json!({
-        "version": 1, "name": "turned", "analysis": "modes", "gravity": [0, 0, 0],
-        "parts": {"rotor": {"bodies": rotor["bodies"], "joints": rotor["joints"], "drives": rotor["drives"]}},
-        "functions": {"c": {"critical_speed": {"number": 1}}}
-    });
-    let mut first = None;
-    for k in 0..10_u32 {
-        let k = f64::from(k);
-        let axis = nalgebra::Vector3::new(0.3 + k, 1.0 - 0.7 * k * k, 0.9 - k).normalize();
-        let angle = 0.37 * k;
-        let turned = nalgebra::Rotation3::new(axis * angle) * nalgebra::Vector3::x();
-        file["turning"] = json!({"axis": [turned.x, turned.y, turned.z], "speed": 400});
-        file["use"] = json!({"a": {"part": "rotor", "turn": {"axis": [axis.x, axis.y, axis.z], "angle": angle}}});
-        let found = values(&file);
-        assert_near(&found, first.get_or_insert_with(|| found.clone()), 1e-9);
-    }
 }

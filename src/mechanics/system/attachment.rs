@@ -72,6 +72,22 @@ pub fn deformed_frame<S: Scalar>(
     (moved, motion)
 }
 
+/// Σ v_I N_I and Σ v_I Θ_I with the velocities v.
+pub(super) fn rates_of_frame<S: Scalar>(
+    modes: &Modes<S>,
+    numbering: &Numbering,
+    v: &[S],
+) -> (Vec3<S>, Vec3<S>) {
+    let mut sums = (Vec3::zeros(), Vec3::zeros());
+    let shapes = modes.displacement.iter().zip(&modes.rotation);
+    for ((n, t), &(carrier, k)) in shapes.zip(&modes.places) {
+        let rate = v[numbering.velocity(carrier) + k];
+        sums.0 += n * rate;
+        sums.1 += t * rate;
+    }
+    sums
+}
+
 /// Derivatives of a row's rate in the rates of the elastic coordinates, with their places among the
 /// velocities, for a row with this force and torque on the section (body axes).
 pub fn elastic_gradient<'a, S: Scalar>(

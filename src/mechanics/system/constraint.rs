@@ -123,27 +123,6 @@ impl<S: Scalar> RowGradient<S> {
     }
 }
 
-/// Action of a row on the section of body A that deforms, in body axes: force at its point, and
-/// torque.
-fn local_gradient<S: Scalar>(
-    row: ConstraintRow,
-    a: &JointSide<S>,
-    b: &JointSide<S>,
-    undeformed: &JointFrame<S>,
-) -> (Vec3<S>, Vec3<S>) {
-    let ra = &a.motion.rotation;
-    let zero = Vec3::zeros();
-    match row {
-        Coincident(k) => (ra.row(k).transpose(), zero),
-        Perpendicular { a: i, b: j } => (zero, undeformed.axes[i].cross(&ra.tr_mul(&b.axis(j)))),
-        Sliding { a: i } => {
-            let d = ra.tr_mul(&(a.point() - b.point()));
-            (a.frame.axes[i], undeformed.axes[i].cross(&d))
-        }
-        Distance => (ra.tr_mul(&((a.point() - b.point()) / a.frame.length)), zero),
-    }
-}
-
 /// Derivatives of the rate of a row by the speed of frame B along e3 and by its spin about it, in the axes of the frame.
 pub(super) fn followed_gradient<S: Scalar>(
     row: ConstraintRow,
@@ -171,42 +150,56 @@ pub fn gradient<S: Scalar>(
 ) -> RowGradient<S> {
     let (ra, rb) = (&a.motion.rotation, &b.motion.rotation);
     let (sa, sb) = (&a.frame.point, &b.frame.point);
-    let mut out = RowGradient::zero();
-    if let Some(undeformed) = &a.undeformed {
-        (out.local_force, out.local_torque) = local_gradient(row, a, b, undeformed);
-    } else if let Some(slope) = b.follows {
-        let (force, torque) = followed_gradient(row, a, b);
-        (out.local_force, out.local_torque) = (force * slope, torque * slope);
-    }
-    (out.force, out.torque_a, out.torque_b) = match row {
-        Coincident(k) => {
-            let mut force = Vec3::zeros();
-            force[k] = S::one();
-            (
-                force,
-                sa.cross(&ra.row(k).transpose()),
-                -sb.cross(&rb.row(k).transpose()),
-            )
+    let zero = Vec3::zeros();
+    // Force at the point of a section of body A that deforms, and torque on it.
+    let of_section = |force, axis: Option<usize>, arm: &Vec3<S>| match &a.undeformed {
+        Some(undeformed) => {
+            let torque = axis.map_or(zero, |i| undeformed.axes[i].cross(arm));
+            (force, torque)
         }
-        Perpendicular { a: i, b: j } => (
-            Vec3::zeros(),
-            a.frame.axes[i].cross(&ra.tr_mul(&b.axis(j))),
-            b.frame.axes[j].cross(&rb.tr_mul(&a.axis(i))),
-        ),
+        None => (zero, zero),
+    };
+    let (force, torque_a, torque_b, (local_force, local_torque)) = match row {
+        Coincident(k) => {
+            let mut force = zero;
+            force[k] = S::one();
+            let along_a = ra.row(k).transpose();
+            let torque_b = -sb.cross(&rb.row(k).transpose());
+            let local = of_section(along_a, None, &zero);
+            (force, sa.cross(&along_a), torque_b, local)
+        }
+        Perpendicular { a: i, b: j } => {
+            let w = ra.tr_mul(&b.axis(j));
+            let torque_b = b.frame.axes[j].cross(&rb.tr_mul(&a.axis(i)));
+            let local = of_section(zero, Some(i), &w);
+            (zero, a.frame.axes[i].cross(&w), torque_b, local)
+        }
         Sliding { a: i } => {
             let (e, u) = (&a.frame.axes[i], a.axis(i));
-            let d = a.point() - b.point();
-            (
-                u,
-                e.cross(&ra.tr_mul(&d)) + sa.cross(e),
-                -sb.cross(&rb.tr_mul(&u)),
-            )
+            let d = ra.tr_mul(&(a.point() - b.point()));
+            let torque_b = -sb.cross(&rb.tr_mul(&u));
+            let local = of_section(*e, Some(i), &d);
+            (u, e.cross(&d) + sa.cross(e), torque_b, local)
         }
         Distance => {
             let u = (a.point() - b.point()) / a.frame.length;
-            (u, sa.cross(&ra.tr_mul(&u)), -sb.cross(&rb.tr_mul(&u)))
+            let along_a = ra.tr_mul(&u);
+            let torque_b = -sb.cross(&rb.tr_mul(&u));
+            let local = of_section(along_a, None, &zero);
+            (u, sa.cross(&along_a), torque_b, local)
         }
     };
+    let mut out = RowGradient {
+        force,
+        torque_a,
+        torque_b,
+        local_force,
+        local_torque,
+    };
+    if let (None, Some(slope)) = (&a.undeformed, b.follows) {
+        let (force, torque) = followed_gradient(row, a, b);
+        (out.local_force, out.local_torque) = (force * slope, torque * slope);
+    }
     out
 }
 
@@ -270,23 +263,48 @@ pub fn pull_back<S: Scalar>(
     b: &JointSide<S>,
 ) -> (SideCotangent<S>, SideCotangent<S>) {
     with_rows(rows, (a, b), |used, rows| {
-        let (by, by_length) = rows.pull_back(cot);
-        let (mut out_a, mut out_b) = (SideCotangent::of(a), SideCotangent::of(b));
-        out_a.frame.length = by_length;
-        if used.points {
-            pull_point(a, &by.distance, &mut out_a);
-            pull_point(b, &MarkerKinematics::zero().minus(&by.distance), &mut out_b);
-        }
-        for i in 0..3 {
-            if used.axes_a[i] {
-                pull_axis(a, i, &by.axes_a[i], &mut out_a);
-            }
-            if used.axes_b[i] {
-                pull_axis(b, i, &by.axes_b[i], &mut out_b);
-            }
-        }
-        (out_a, out_b)
+        pull_markers(used, rows.pull_back(cot), (a, b))
     })
+}
+
+/// Calls `visit` with every row and the pull-back of its cotangent `cot` alone.
+pub fn pull_back_each<S: Scalar>(
+    rows: impl Iterator<Item = ConstraintRow> + Clone,
+    cot: RowCotangent<S>,
+    (a, b): (&JointSide<S>, &JointSide<S>),
+    mut visit: impl FnMut(ConstraintRow, SideCotangent<S>, SideCotangent<S>),
+) {
+    with_rows(rows, (a, b), |_, all| {
+        for row in all.rows.clone() {
+            let alone = std::iter::once(row);
+            let used = MarkersUsed::by(alone.clone());
+            let (by_a, by_b) = pull_markers(&used, all.only(alone).pull_back(|_| cot), (a, b));
+            visit(row, by_a, by_b);
+        }
+    });
+}
+
+/// Pulls cotangents of the markers in use, and of the length of a rod, back to both sides.
+fn pull_markers<S: Scalar>(
+    used: &MarkersUsed,
+    (by, by_length): (Markers<S, 3>, S),
+    (a, b): (&JointSide<S>, &JointSide<S>),
+) -> (SideCotangent<S>, SideCotangent<S>) {
+    let (mut out_a, mut out_b) = (SideCotangent::of(a), SideCotangent::of(b));
+    out_a.frame.length = by_length;
+    if used.points {
+        pull_point(a, &by.distance, &mut out_a);
+        pull_point(b, &MarkerKinematics::zero().minus(&by.distance), &mut out_b);
+    }
+    for i in 0..3 {
+        if used.axes_a[i] {
+            pull_axis(a, i, &by.axes_a[i], &mut out_a);
+        }
+        if used.axes_b[i] {
+            pull_axis(b, i, &by.axes_b[i], &mut out_b);
+        }
+    }
+    (out_a, out_b)
 }
 
 fn pull_axis<S: Scalar>(

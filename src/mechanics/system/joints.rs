@@ -65,13 +65,13 @@ pub fn rates_from_gradients<S: Scalar>(
             velocities_of(&v[numbering.velocity(b)..])
         });
         let relative = linear_a - linear_b;
+        let modes = joint.modes.as_ref();
+        let of_frame = modes.map(|modes| attachment::rates_of_frame(modes, numbering, v));
         for i in numbering.rows(j) {
             let g = &gradients[i];
             out[i] = g.force.dot(&relative) + g.torque_a.dot(&omega_a) + g.torque_b.dot(&omega_b);
-            if let Some(modes) = &joint.modes {
-                for (slot, x) in attachment::elastic_gradient(modes, numbering, g.local()) {
-                    out[i] += x * v[slot];
-                }
+            if let Some((linear, angular)) = &of_frame {
+                out[i] += g.local_force.dot(linear) + g.local_torque.dot(angular);
             }
         }
     }
@@ -222,19 +222,20 @@ pub fn curvature<S: Scalar>(joint: &Joint<S>, at: &InMotion<S>) -> Option<(usize
     all.next().map(|(slot, x)| (slot, x * curvature))
 }
 
-/// Derivative of the rate of one row in the tangent positions of its two bodies.
-pub fn rate_by_position<S: Scalar>(
-    row: ConstraintRow,
-    a: &JointSide<S>,
-    b: &JointSide<S>,
-) -> (SideCotangent<S>, SideCotangent<S>) {
+/// Calls `visit(row, side a, side b)` for every row of a joint, with the derivatives of its rate in the tangent positions
+/// of the two bodies.
+pub fn rates_by_position<S: Scalar>(
+    joint: &Joint<S>,
+    (a, b): (&JointSide<S>, &JointSide<S>),
+    visit: impl FnMut(ConstraintRow, SideCotangent<S>, SideCotangent<S>),
+) {
     let unit = RowCotangent {
         value: S::zero(),
         rate: S::one(),
         acceleration: S::zero(),
         virtual_rate: S::zero(),
     };
-    constraint::pull_back(std::iter::once(row), |_| unit, a, b)
+    constraint::pull_back_each(joint.rows(), unit, (a, b), visit);
 }
 
 /// Destination of the pull-back of the constraints.

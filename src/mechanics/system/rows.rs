@@ -108,6 +108,16 @@ pub(super) struct Rows<'a, S, R, const D: usize> {
 }
 
 impl<S: Scalar, R: Iterator<Item = ConstraintRow> + Clone, const D: usize> Rows<'_, S, R, D> {
+    /// Some of the rows.
+    pub(super) fn only<Q>(&self, rows: Q) -> Rows<'_, S, Q, D> {
+        Rows {
+            rows,
+            markers: self.markers,
+            length: self.length,
+            ground: self.ground,
+        }
+    }
+
     /// The factors u, w, s of a row.
     fn factors(&self, row: ConstraintRow) -> (MarkerKinematics<S, D>, MarkerKinematics<S, D>, S) {
         let (m, one) = (self.markers, S::one());

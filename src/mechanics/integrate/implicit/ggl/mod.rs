@@ -32,7 +32,7 @@ use crate::system::loads::{self, LoadEntries};
 use crate::system::reduce;
 use crate::system::redundant_rows::RedundantRows;
 use crate::system::side::sides;
-use crate::system::{Numbering, joints::rate_by_position};
+use crate::system::{Numbering, joints::rates_by_position};
 
 /// Number of parts of a residual in velocity numbering: positions and velocities.
 const PARTS: usize = 2;
@@ -304,8 +304,10 @@ impl<'a, S: Scalar> Equations<'a, S> {
         let ground = BodyMotion::ground();
         for (j, joint) in model.joints.iter().enumerate() {
             let (a, b) = sides(joint, motions, &ground, at.time);
-            for (i, row) in numbering.rows(j).zip(joint.rows()) {
-                let (by_a, by_b) = rate_by_position(row, &a, &b);
+            let curved = joints::curvature(joint, &here);
+            let mut numbers = numbering.rows(j);
+            rates_by_position(joint, (&a, &b), |row, by_a, by_b| {
+                let Some(i) = numbers.next() else { return };
                 let of_frame = by_a.frame;
                 // Zeros are emitted, because the pattern serves every choice of rows.
                 let h = if self.left_out.contains(i) {
@@ -321,16 +323,16 @@ impl<'a, S: Scalar> Equations<'a, S> {
                     }
                     emit.add_row(f4 + i, column + 3, &(by.theta * h));
                 }
-                if let Some((slot, x)) = joints::curvature(joint, &here) {
+                if let Some((slot, x)) = curved {
                     emit.add(f4 + i, y + slot, x * at.v[slot] * h);
                 }
                 // The rate of other coupled joints does not depend on their coordinates where they are closed.
                 let modes = joint.modes.as_ref().filter(|_| !joint.is_coupled());
-                let Some(modes) = modes else { continue };
+                let Some(modes) = modes else { return };
                 for (slot, x) in by_coordinates(joint, modes, numbering, &of_frame) {
                     emit.add(f4 + i, y + slot, x * h);
                 }
-            }
+            });
         }
     }
 
