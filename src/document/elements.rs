@@ -87,8 +87,8 @@ pub struct Stiffener {
 #[derive(Clone, Debug, Deserialize, JsonSchema)]
 #[serde(rename_all = "snake_case", deny_unknown_fields)]
 pub enum ElementFrame {
-    /// Three sets of one node: the first does not move, the second stays on the line from the first, the
-    /// third in the plane of all.
+    /// Three sets of one node: the first does not move, the second moves along the axis of the mesh that is nearest to the
+    /// line from the first, the third does not move along the axis that is nearest to the normal of their plane.
     Chord([String; 3]),
     /// A set of nodes that do not move, or the name of an edge.
     Clamped(String),

@@ -9,6 +9,7 @@ mod reference;
 mod aggregates;
 mod at_rest;
 mod axes_of_beams;
+mod axes_of_meshes;
 mod beam_scenes;
 mod beams;
 mod benchmarks;

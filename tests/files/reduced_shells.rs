@@ -204,6 +204,59 @@ fn a_basis_is_explained() {
     assert!(text.contains("as a rigid body"), "{text}");
 }
 
+/// A warped panel that hangs from a corner, with a body welded to its rigid edge. The edge does not move in the axes: six
+/// motions of each corner are boundary modes, and no round-off is one.
+#[test]
+fn the_basis_of_a_warped_panel_has_no_round_off() {
+    let panel = |lift: f64| {
+        let points = json!([
+            [0, 0, 0],
+            [0.5, 0, 0],
+            [1, 0, lift],
+            [0, 0.15, 0],
+            [0.5, 0.15, 0.025],
+            [1, 0.15, 0.05],
+            [0, 0.3, 0],
+            [0.5, 0.3, 0.05],
+            [1, 0.3, 0.1]
+        ]);
+        json!({
+            "version": 1, "name": "panel", "gravity": [1, 2, -5],
+            "materials": {"m": {"young": 5e8, "poisson": 0.3, "density": 1000}},
+            "bodies": {
+                "A": {"elements": {
+                    "structure": {"mesh": {"panel": {"points": points, "elements": [4, 1]}}, "material": "m",
+                        "thickness": 0.01, "element": "mitc9"},
+                    "frame": {"chord": ["x0y0", "x1y0", "x0y1"]},
+                    "points": {"root": {"node": "x0y0"}, "end": {"edge": "x1"}, "q": {"node": "x0y1"}},
+                    "basis": {"reduced": {}}
+                }},
+                "B": {"shape": {"box": {"size": [0.1, 0.1, 0.1]}}, "mass": 1, "place": {"at": "A.end"}}
+            },
+            "joints": {
+                "root": {"spherical": {"between": ["A", "ground"], "at": "A.root"}},
+                "end": {"weld": {"between": ["B", "A"], "at": "A.end"}}
+            },
+            "simulation": {"duration": 0.1, "steps": 25, "method": {"radau": {"stages": 3}}},
+            "functions": {
+                "velocity": {"final": {"velocity": {"body": "A", "point": "q", "direction": [1, 1, 1]}}},
+                "energy": {"final": {"strain_energy": {"body": "A"}}}
+            }
+        })
+    };
+    let text = explain(&parsed(&panel(0.0))).text();
+    assert!(text.contains("12 boundary modes"), "{text}");
+    let flat = values(&panel(0.0));
+    for lift in [1e-13, 1e-10] {
+        for (found, expected) in values(&panel(lift)).iter().zip(&flat) {
+            assert!(
+                (found / expected - 1.0).abs() < 1e-6,
+                "{lift}: {found} {expected}"
+            );
+        }
+    }
+}
+
 /// The changes of the file that `--accuracy` gives make the richer bases.
 #[test]
 fn richer_bases_are_changes_of_the_file() {

@@ -21,7 +21,7 @@ pub struct NonRotating {
 }
 
 fn holds_rotation(row: &ConstraintRow) -> bool {
-    matches!(row, ConstraintRow::Perpendicular { .. })
+    row.is_angle()
 }
 
 /// Whether a joint prevents any relative rotation of its bodies.

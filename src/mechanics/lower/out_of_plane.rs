@@ -8,9 +8,7 @@ use crate::model::{ConstraintRow, Joint};
 
 /// Whether the trivially satisfied rows of a joint keep its bodies parallel.
 pub(super) fn holds_upright(trivial_rows: &[ConstraintRow]) -> bool {
-    let angles = trivial_rows
-        .iter()
-        .filter(|row| matches!(row, ConstraintRow::Perpendicular { .. }));
+    let angles = trivial_rows.iter().filter(|row| row.is_angle());
     angles.count() >= 2
 }
 

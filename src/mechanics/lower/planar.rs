@@ -30,7 +30,7 @@ use crate::math::{Mat3, Scalar, Vec3, rotation};
 use crate::model::{ConstraintRow, Joint, JointFrame, JointKind};
 use crate::model::{LoadKind, Mobility, Model, RigidBody};
 use crate::system::redundancy;
-use ConstraintRow::{Coincident, Distance, Perpendicular, Sliding};
+use ConstraintRow::{Aligned, Coincident, Distance, Perpendicular, Sliding};
 
 /// A plane, and the heights of the parts of a scene in it.
 #[derive(Clone, Debug)]
@@ -107,6 +107,11 @@ pub(super) fn used<S>(joint: &Joint<S>) -> [[bool; 3]; 2] {
                 used[1][b] = true;
             }
             Sliding { a } => used[0][a] = true,
+            Aligned { a, b } => {
+                for side in &mut used {
+                    (side[a], side[b]) = (true, true);
+                }
+            }
         }
     }
     used
@@ -241,7 +246,7 @@ impl Plane {
         let largest = Coincident(self.normal.iamax());
         let trivial_rows = |row: &ConstraintRow| match *row {
             Coincident(_) => *row == largest,
-            Perpendicular { a, b } => across(0, a) != across(1, b),
+            Perpendicular { a, b } | Aligned { a, b } => across(0, a) != across(1, b),
             Sliding { a } => across(0, a),
             Distance => false,
         };

@@ -1,7 +1,7 @@
 //! The joints and their constraint rows.
 //!
 //! Let d = r_A + R_A s_A − r_B − R_B s_B, and let e1, e2, e3 be orthonormal axes fixed in each body
-//! (e3 is the joint's axis). Every joint is a list of rows of four kinds (Haug 1989,
+//! (e3 is the joint's axis). Every joint is a list of rows of these kinds (the first four: Haug 1989,
 //! *Computer Aided Kinematics and Dynamics of Mechanical Systems*, ch. 9):
 //!
 //! ```text
@@ -9,7 +9,11 @@
 //! Perpendicular    (R_A e_i) · (R_B e_j)   = 0
 //! Sliding i        (R_A e_i) · d           = 0
 //! Distance         ½ (d · d / L − L)       = 0      L is the length of a rod
+//! Aligned          ½ ((R_A e_i) · (R_B e_j) − (R_A e_j) · (R_B e_i)) = 0
 //! ```
+//!
+//! Three rows Aligned turn body B by the rotation that is nearest to the axes of A, which need not be orthonormal: those of a
+//! section that deforms turn by atan |θ| about θ, whatever the axes are (polar decomposition).
 //!
 //! A drive adds one row for a degree of freedom of the joint, see [`super::drive`]. The equations,
 //! Jacobians and pull-backs of the rows are in `system::constraint`.
@@ -47,6 +51,13 @@ pub enum ConstraintRow {
     },
     /// d has the length of the rod.
     Distance,
+    /// Axes `a` and `b` of both frames have no relative rotation in the plane that they span.
+    Aligned {
+        /// An axis on both bodies.
+        a: usize,
+        /// Another one.
+        b: usize,
+    },
 }
 
 impl ConstraintRow {
@@ -54,7 +65,7 @@ impl ConstraintRow {
     pub fn ground_component(self) -> Option<usize> {
         match self {
             Coincident(k) => Some(k),
-            Perpendicular { .. } | Sliding { .. } | Distance => None,
+            Perpendicular { .. } | Aligned { .. } | Sliding { .. } | Distance => None,
         }
     }
 
@@ -64,7 +75,7 @@ impl ConstraintRow {
             Coincident(0) => "x distance",
             Coincident(1) => "y distance",
             Coincident(_) => "z distance",
-            Perpendicular { .. } => "angle between axes",
+            Perpendicular { .. } | Aligned { .. } => "angle between axes",
             Sliding { .. } => "distance along an axis",
             Distance => "length",
         }
@@ -73,8 +84,16 @@ impl ConstraintRow {
     /// Unit of the row's value: 1 of an angle, and `length` otherwise.
     pub fn size(self, length: f64) -> f64 {
         match self {
-            Perpendicular { .. } => 1.0,
+            Perpendicular { .. } | Aligned { .. } => 1.0,
             Coincident(_) | Sliding { .. } | Distance => length,
+        }
+    }
+
+    /// Whether the row holds an angle.
+    pub fn is_angle(self) -> bool {
+        match self {
+            Perpendicular { .. } | Aligned { .. } => true,
+            Coincident(_) | Sliding { .. } | Distance => false,
         }
     }
 
@@ -82,7 +101,7 @@ impl ConstraintRow {
     pub fn has_force(self) -> bool {
         match self {
             Coincident(_) | Sliding { .. } | Distance => true,
-            Perpendicular { .. } => false,
+            Perpendicular { .. } | Aligned { .. } => false,
         }
     }
 
@@ -90,7 +109,7 @@ impl ConstraintRow {
     pub fn depends_on_distance(self) -> bool {
         match self {
             Sliding { .. } | Distance => true,
-            Coincident(_) | Perpendicular { .. } => false,
+            Coincident(_) | Perpendicular { .. } | Aligned { .. } => false,
         }
     }
 
@@ -98,14 +117,14 @@ impl ConstraintRow {
     pub fn follows_distance(self) -> bool {
         match self {
             Distance => true,
-            Coincident(_) | Perpendicular { .. } | Sliding { .. } => false,
+            Coincident(_) | Perpendicular { .. } | Aligned { .. } | Sliding { .. } => false,
         }
     }
 
     /// Whether the reaction on one body depends on the rotation of the other.
     pub fn couples_rotations(self) -> bool {
         match self {
-            Perpendicular { .. } | Sliding { .. } | Distance => true,
+            Perpendicular { .. } | Aligned { .. } | Sliding { .. } | Distance => true,
             Coincident(_) => false,
         }
     }
@@ -139,7 +158,7 @@ pub enum JointKind {
     Coupled(DegreeOfFreedom),
 }
 
-use ConstraintRow::{Coincident, Distance, Perpendicular, Sliding};
+use ConstraintRow::{Aligned, Coincident, Distance, Perpendicular, Sliding};
 
 impl JointKind {
     /// The constraint rows of this joint.
@@ -179,7 +198,15 @@ impl JointKind {
             ],
             JointKind::Rod => &[Distance],
             JointKind::Free => &[],
-            JointKind::Weld | JointKind::Attachment => &[
+            JointKind::Attachment => &[
+                Coincident(0),
+                Coincident(1),
+                Coincident(2),
+                Aligned { a: 0, b: 1 },
+                Aligned { a: 1, b: 2 },
+                Aligned { a: 2, b: 0 },
+            ],
+            JointKind::Weld => &[
                 Coincident(0),
                 Coincident(1),
                 Coincident(2),

@@ -410,7 +410,8 @@ impl Surface {
                 }
             }
             let Some(along) = along else { continue };
-            for (coordinate, rotation) in &self.rotations[node] {
+            // The normal of a surface is across its edges.
+            for (coordinate, rotation) in &self.unknown_rotations[node] {
                 sum.at(*coordinate).1 += along * (w * rotation.dot(&along));
             }
         }

@@ -9,6 +9,7 @@
 //! Perpendicular    u · w       u̇ · w + u · ẇ        ü · w + 2 u̇ · ẇ + u · ẅ
 //! Sliding          u · d       u̇ · d + u · ḋ        ü · d + 2 u̇ · ḋ + u · d̈
 //! Distance         ½(d·d/L−L)  d · ḋ / L            (d · d̈ + ḋ · ḋ) / L
+//! Aligned          half the difference of two rows Perpendicular
 //! ```
 //!
 //! [`crate::model::JointKind::rows`] lists the rows of each joint: a revolute has Coincident 0, 1, 2 and
@@ -23,7 +24,7 @@ use super::rows::{Markers, MarkersUsed, RowCotangent, Rows};
 use super::side::JointSide;
 use crate::math::{Scalar, Vec3};
 use crate::model::{ConstraintRow, JointFrame};
-use ConstraintRow::{Coincident, Distance, Perpendicular, Sliding};
+use ConstraintRow::{Aligned, Coincident, Distance, Perpendicular, Sliding};
 
 /// The markers of the rows of a joint; each is evaluated once.
 fn markers<S: Scalar>(used: &MarkersUsed, a: &JointSide<S>, b: &JointSide<S>) -> Markers<S, 3> {
@@ -57,6 +58,7 @@ pub fn value<S: Scalar>(row: ConstraintRow, a: &JointSide<S>, b: &JointSide<S>) 
             let (d, length) = (a.point() - b.point(), a.frame.length);
             (d.dot(&d) / length - length) * 0.5
         }
+        Aligned { a: i, b: j } => (a.axis(i).dot(&b.axis(j)) - a.axis(j).dot(&b.axis(i))) * 0.5,
     }
 }
 
@@ -110,6 +112,18 @@ impl<S: Scalar> RowGradient<S> {
         (self.local_force, self.local_torque)
     }
 
+    /// Half the difference of two rows.
+    fn half_less(&self, other: &Self) -> Self {
+        let half = |x: &Vec3<S>, y: &Vec3<S>| (x - y) * S::from(0.5);
+        Self {
+            force: half(&self.force, &other.force),
+            torque_a: half(&self.torque_a, &other.torque_a),
+            torque_b: half(&self.torque_b, &other.torque_b),
+            local_force: half(&self.local_force, &other.local_force),
+            local_torque: half(&self.local_torque, &other.local_torque),
+        }
+    }
+
     /// All zero.
     pub fn zero() -> Self {
         let zero = Vec3::zeros();
@@ -138,7 +152,7 @@ pub(super) fn followed_gradient<S: Scalar>(
         }
         Sliding { a: i } => (along(-a.axis(i).dot(&e3)), Vec3::zeros()),
         // No coupled joint has such a row.
-        Coincident(_) | Distance => (Vec3::zeros(), Vec3::zeros()),
+        Coincident(_) | Distance | Aligned { .. } => (Vec3::zeros(), Vec3::zeros()),
     }
 }
 
@@ -187,6 +201,16 @@ pub fn gradient<S: Scalar>(
             let torque_b = -sb.cross(&rb.tr_mul(&u));
             let local = of_section(along_a, None, &zero);
             (u, sa.cross(&along_a), torque_b, local)
+        }
+        Aligned { a: i, b: j } => {
+            let [one, other] = [(i, j), (j, i)].map(|(a_axis, b_axis)| {
+                let row = Perpendicular {
+                    a: a_axis,
+                    b: b_axis,
+                };
+                gradient(row, a, b)
+            });
+            return one.half_less(&other);
         }
     };
     let mut out = RowGradient {

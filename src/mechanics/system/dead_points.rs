@@ -43,7 +43,7 @@ pub fn driven_to_dead_point<'a>(model: &'a Model<f64>, q: &[f64], time: f64) -> 
         .collect();
     let svd = rows
         .gradients(q)
-        .0
+        .transposed()
         .select_columns(&imposed)
         .svd(false, true);
     let (least, _) = svd.singular_values.argmin();

@@ -66,12 +66,22 @@ pub fn rates_from_gradients<S: Scalar>(
         });
         let relative = linear_a - linear_b;
         let modes = joint.modes.as_ref();
-        let of_frame = modes.map(|modes| attachment::rates_of_frame(modes, numbering, v));
+        // The few coordinates of a coupling are summed row by row: their sum may cancel.
+        let (coupled, deformed) = match joint.is_coupled() {
+            true => (modes, None),
+            false => (None, modes),
+        };
+        let of_frame = deformed.map(|modes| attachment::rates_of_frame(modes, numbering, v));
         for i in numbering.rows(j) {
             let g = &gradients[i];
             out[i] = g.force.dot(&relative) + g.torque_a.dot(&omega_a) + g.torque_b.dot(&omega_b);
             if let Some((linear, angular)) = &of_frame {
                 out[i] += g.local_force.dot(linear) + g.local_torque.dot(angular);
+            }
+            if let Some(modes) = coupled {
+                for (slot, x) in attachment::elastic_gradient(modes, numbering, g.local()) {
+                    out[i] += x * v[slot];
+                }
             }
         }
     }

@@ -7,18 +7,13 @@ use super::joints;
 use super::numbering::Numbering;
 use super::placement::guess;
 use super::reduce;
+use super::unit_rows::UnitRows;
 use crate::math::Vec3;
 use crate::model::{ConstraintRow, Model};
-use nalgebra::{Cholesky, DMatrix, DVector, Dyn};
+use nalgebra::DVector;
 
-/// A unit row is dependent if its part across the others is smaller.
-const DEPENDENT: f64 = 1e-11;
-/// An earlier row is preferred if its part is at least this fraction of the largest.
-const PREFERRED: f64 = 0.1;
 /// Joints are closed up to this gap relative to the length scale.
 const CLOSED: f64 = 1e-12;
-/// Weight that keeps the equations of a closing step regular, relative to unit rows.
-const REGULAR: f64 = 1e-10;
 /// Largest number of closing steps.
 const ITERATIONS: usize = 50;
 /// Distances from the placement that are tried for the nearby position, in units of the length
@@ -116,43 +111,45 @@ impl<'a> Rows<'a> {
         InMotion::new(self.model, &self.numbering, motions, self.time)
     }
 
-    /// Unit rows of G as columns, with angles as arcs at the length scale, and the factors that
-    /// normalise them.
-    pub(super) fn gradients(&self, q: &[f64]) -> (DMatrix<f64>, Vec<f64>) {
+    /// Unit rows of G, with angles as arcs at the length scale.
+    pub(super) fn gradients(&self, q: &[f64]) -> UnitRows {
         let motions = self.motions(q);
         let mut all = Vec::new();
         joints::gradients(&self.at(&motions), &mut all);
-        let mut g = DMatrix::zeros(self.numbering.velocities(), self.list.len());
-        for (i, own) in self.list.iter().enumerate() {
+        let numbering = &self.numbering;
+        let columns = numbering.velocities();
+        let mut dense = vec![0.0; columns];
+        let one = |own: &Row| {
             let joint = &self.model.joints[own.joint];
             let row = &all[own.number];
-            let a = self.numbering.velocity(joint.body_a);
+            let mut places = Vec::new();
             let mut put = |at: usize, values: &Vec3<f64>, scale: f64| {
                 for k in 0..3 {
-                    g[(at + k, i)] += values[k] * scale;
+                    dense[at + k] += values[k] * scale;
                 }
+                places.extend(at..at + 3);
             };
+            let a = numbering.velocity(joint.body_a);
             put(a, &row.force, 1.0);
             put(a + 3, &row.torque_a, 1.0 / self.length);
-            if let Some(b) = joint.body_b.map(|b| self.numbering.velocity(b)) {
+            if let Some(b) = joint.body_b.map(|b| numbering.velocity(b)) {
                 put(b, &row.force, -1.0);
                 put(b + 3, &row.torque_b, 1.0 / self.length);
             }
             if let Some(modes) = &joint.modes {
-                let local = row.local();
-                for (slot, x) in attachment::elastic_gradient(modes, &self.numbering, local) {
-                    g[(slot, i)] += x;
+                for (slot, x) in attachment::elastic_gradient(modes, numbering, row.local()) {
+                    dense[slot] += x;
+                    places.push(slot);
                 }
             }
-        }
-        for mut row in g.column_iter_mut() {
-            reduce::project(&self.numbering, row.as_mut_slice());
-        }
-        let scales: Vec<f64> = g.column_iter().map(|row| 1.0 / row.norm()).collect();
-        for (mut row, scale) in g.column_iter_mut().zip(&scales) {
-            row *= *scale;
-        }
-        (g, scales)
+            reduce::project(numbering, &mut dense);
+            places.sort_unstable();
+            places.dedup();
+            let entries = places.iter().map(|&k| (k, dense[k])).collect();
+            places.iter().for_each(|&k| dense[k] = 0.0);
+            entries
+        };
+        UnitRows::new(self.list.iter().map(one).collect(), columns)
     }
 
     /// The values of the rows at q.
@@ -187,10 +184,10 @@ impl<'a> Rows<'a> {
                 return Some(q);
             }
             closed_before = closed;
-            let (g, scales) = self.gradients(&q);
-            let open = values.iter().zip(&scales).map(|(x, scale)| -x * scale);
-            let open = DVector::from_iterator(scales.len(), open);
-            let step = &g * normal(&g)?.solve(&open);
+            let g = self.gradients(&q);
+            let open = values.iter().zip(&g.scales);
+            let open: Vec<f64> = open.map(|(x, scale)| -x * scale).collect();
+            let step = g.combined(&g.normal()?.solve(&open));
             self.advance(&mut q, &step);
         }
         None
@@ -214,15 +211,15 @@ impl<'a> Rows<'a> {
     /// A closed position at the given distance from `q`, along a motion that the joints allow;
     /// `None` if they allow none.
     fn beside(&self, q: &[f64], distance: f64) -> Option<Vec<f64>> {
-        let (g, _) = self.gradients(q);
+        let g = self.gradients(q);
         // A direction without symmetry.
         let count = self.numbering.velocities();
         let mut along = DVector::from_fn(count, |i, _| (1.0 + 1.7 * i as f64).sin());
         reduce::project(&self.numbering, along.as_mut_slice());
-        let factors = normal(&g)?;
+        let mut factors = g.normal()?;
         // Twice, because the regularising weight leaves a small part.
         for _ in 0..2 {
-            along -= &g * factors.solve(&g.tr_mul(&along));
+            along -= g.combined(&factors.solve(&g.products(&along)));
         }
         let size = along.amax();
         if size < 1e-6 {
@@ -236,40 +233,6 @@ impl<'a> Rows<'a> {
     /// The rows to keep at q in this order, so that they are independent and the others follow, each with
     /// the largest part of a row across those before.
     pub(super) fn order(&self, q: &[f64]) -> Vec<(usize, f64)> {
-        let (mut g, _) = self.gradients(q);
-        let mut kept = vec![false; g.ncols()];
-        let mut order = Vec::new();
-        loop {
-            let sizes: Vec<f64> = g.column_iter().map(|row| row.norm()).collect();
-            let free = |i: &usize| !kept[*i];
-            let largest = (0..sizes.len())
-                .filter(free)
-                .map(|i| sizes[i])
-                .fold(0.0, f64::max);
-            if largest <= DEPENDENT {
-                return order;
-            }
-            let first = (0..sizes.len())
-                .filter(free)
-                .find(|&i| sizes[i] >= PREFERRED * largest);
-            let Some(first) = first else { return order };
-            kept[first] = true;
-            order.push((first, largest));
-            let pivot = g.column(first) / sizes[first];
-            for (i, mut row) in g.column_iter_mut().enumerate() {
-                if !kept[i] {
-                    row.axpy(-row.dot(&pivot), &pivot, 1.0);
-                }
-            }
-        }
+        self.gradients(q).independent()
     }
-}
-
-/// Factors of G Gᵀ, regularised where rows are dependent; `g` is the transpose of G.
-fn normal(g: &DMatrix<f64>) -> Option<Cholesky<f64, Dyn>> {
-    let mut product = g.transpose() * g;
-    for i in 0..product.nrows() {
-        product[(i, i)] += REGULAR;
-    }
-    product.cholesky()
 }

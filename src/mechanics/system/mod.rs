@@ -51,6 +51,7 @@ pub mod side;
 mod strains;
 pub mod tree;
 pub mod turns;
+mod unit_rows;
 
 pub use bodies::BodyMotion;
 pub use in_motion::InMotion;

@@ -266,6 +266,11 @@ impl<S: Scalar> PlanarJoints<S> {
                 let normal = |body: usize| self.planes[body].normal.map(S::from);
                 (normal(joint.body_a) * a, normal(joint.body_b) * b)
             };
+            let perpendicular = |a: usize, b: usize| {
+                let (u, across_u) = ma.turned(&joint.a.axes[a]);
+                let (w, across_w) = mb.turned(&joint.b.axes[b]);
+                (across_u.dot(&w), u.dot(&across_w))
+            };
             for &row in &joint.rows {
                 let (force, (torque_a, torque_b)) = match row {
                     ConstraintRow::Coincident(k) => {
@@ -275,9 +280,16 @@ impl<S: Scalar> PlanarJoints<S> {
                         (force, torques(e.dot(&across_a), -e.dot(&across_b)))
                     }
                     ConstraintRow::Perpendicular { a, b } => {
-                        let (u, across_u) = ma.turned(&joint.a.axes[a]);
-                        let (w, across_w) = mb.turned(&joint.b.axes[b]);
-                        (Vec3::zeros(), torques(across_u.dot(&w), u.dot(&across_w)))
+                        let (on_a, on_b) = perpendicular(a, b);
+                        (Vec3::zeros(), torques(on_a, on_b))
+                    }
+                    ConstraintRow::Aligned { a, b } => {
+                        let [one, other] = [(a, b), (b, a)].map(|(a, b)| perpendicular(a, b));
+                        let half = |x: S, y: S| (x - y) * 0.5;
+                        (
+                            Vec3::zeros(),
+                            torques(half(one.0, other.0), half(one.1, other.1)),
+                        )
                     }
                     ConstraintRow::Sliding { a } => {
                         let (u, across_u) = ma.turned(&joint.a.axes[a]);

@@ -5,7 +5,7 @@ use super::side::JointSide;
 use crate::math::scalar::skew;
 use crate::math::{Mat3, Scalar, Vec3};
 use crate::model::{ConstraintRow, JointFrame};
-use ConstraintRow::{Coincident, Distance, Perpendicular, Sliding};
+use ConstraintRow::{Aligned, Coincident, Distance, Perpendicular, Sliding};
 
 /// Derivative of Gᵀλ of one row in the tangent positions (δr_A, δθ_A, δr_B, δθ_B); components in
 /// the same order, 3 × 3 blocks. Blocks that vanish for every row are omitted. The components of
@@ -100,6 +100,11 @@ pub fn add_reaction_jacobian<S: Scalar>(
             out.b_by_a += mixed.transpose();
             out.b_by_b -= sb * (skew(&rb.tr_mul(&d)) + sb) * l;
         }
+        Aligned { a: i, b: j } => {
+            let half = lambda * 0.5;
+            add_reaction_jacobian(Perpendicular { a: i, b: j }, half, a, b, out);
+            add_reaction_jacobian(Perpendicular { a: j, b: i }, -half, a, b, out);
+        }
     }
 }
 
@@ -141,6 +146,12 @@ pub fn add_elastic_reaction<S: Scalar>(
             let w = skew(&ra.tr_mul(&b.axis(j)));
             out.a_by_rotation += w * e * lambda;
             out.b_by_rotation -= skew(&b.frame.axes[j]) * rb.tr_mul(ra) * e * lambda;
+        }
+        Aligned { a: i, b: j } => {
+            let half = lambda * 0.5;
+            let at = (a, undeformed);
+            add_elastic_reaction(Perpendicular { a: i, b: j }, half, at, b, out);
+            add_elastic_reaction(Perpendicular { a: j, b: i }, -half, at, b, out);
         }
         // No attachment has such a row.
         Sliding { .. } | Distance => {}

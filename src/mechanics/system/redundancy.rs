@@ -80,7 +80,7 @@ pub fn unit_rows(model: &Model<f64>, q: &[f64]) -> (DMatrix<f64>, Vec<usize>) {
     let left_out = RedundantRows::of(model, &rows.numbering);
     rows.list.retain(|own| !left_out.contains(own.number));
     let of = rows.list.iter().map(|own| own.joint).collect();
-    (rows.gradients(q).0, of)
+    (rows.gradients(q).transposed(), of)
 }
 
 /// The redundant rows of a model, in the order of its joints; `None` if the joints cannot be closed.

@@ -9,6 +9,7 @@
 //! Perpendicular    u      w      1
 //! Sliding          u      d      1
 //! Distance         d      d      1 / (2 L)
+//! Aligned          half the difference of two rows Perpendicular
 //! ```
 //!
 //! The table in [`super::constraint`] follows by the product rule. Vectors have D components: 3 in
@@ -17,7 +18,7 @@
 use super::marker::MarkerKinematics;
 use crate::math::Scalar;
 use crate::model::ConstraintRow;
-use ConstraintRow::{Coincident, Distance, Perpendicular, Sliding};
+use ConstraintRow::{Aligned, Coincident, Distance, Perpendicular, Sliding};
 use nalgebra::SVector;
 
 /// The markers that the rows of a joint need.
@@ -45,6 +46,12 @@ impl MarkersUsed {
                 Sliding { a } => {
                     used.points = true;
                     used.axes_a[a] = true;
+                }
+                Aligned { a, b } => {
+                    for i in [a, b] {
+                        used.axes_a[i] = true;
+                        used.axes_b[i] = true;
+                    }
                 }
             }
         }
@@ -118,35 +125,41 @@ impl<S: Scalar, R: Iterator<Item = ConstraintRow> + Clone, const D: usize> Rows<
         }
     }
 
-    /// The factors u, w, s of a row.
-    fn factors(&self, row: ConstraintRow) -> (MarkerKinematics<S, D>, MarkerKinematics<S, D>, S) {
-        let (m, one) = (self.markers, S::one());
+    /// The sum of `of(u, w)` times s over the products of a row.
+    fn over_products(
+        &self,
+        row: ConstraintRow,
+        of: impl Fn(&MarkerKinematics<S, D>, &MarkerKinematics<S, D>) -> S,
+    ) -> S {
+        let m = self.markers;
         match row {
-            Coincident(k) => (MarkerKinematics::fixed(self.ground[k]), m.distance, one),
-            Perpendicular { a, b } => (m.axes_a[a], m.axes_b[b], one),
-            Sliding { a } => (m.axes_a[a], m.distance, one),
-            Distance => (m.distance, m.distance, S::from(0.5) / self.length),
+            Coincident(k) => of(&MarkerKinematics::fixed(self.ground[k]), &m.distance),
+            Perpendicular { a, b } => of(&m.axes_a[a], &m.axes_b[b]),
+            Sliding { a } => of(&m.axes_a[a], &m.distance),
+            Distance => of(&m.distance, &m.distance) * (S::from(0.5) / self.length),
+            Aligned { a, b } => {
+                (of(&m.axes_a[a], &m.axes_b[b]) - of(&m.axes_a[b], &m.axes_b[a])) * 0.5
+            }
         }
     }
 
     /// Φ̇ of each row.
     pub(super) fn rates(&self, out: &mut [S]) {
         for (row, out) in self.rows.clone().zip(out) {
-            let (u, w, scale) = self.factors(row);
-            *out = (u.rate.dot(&w.x) + u.x.dot(&w.rate)) * scale;
+            *out = self.over_products(row, |u, w| u.rate.dot(&w.x) + u.x.dot(&w.rate));
         }
     }
 
     /// Φ̈ of each row.
     pub(super) fn accelerations(&self, out: &mut [S]) {
         for (row, out) in self.rows.clone().zip(out) {
-            let (u, w, scale) = self.factors(row);
             *out = match row {
-                Coincident(_) => u.x.dot(&w.acceleration),
-                Perpendicular { .. } | Sliding { .. } | Distance => {
-                    let ends = u.acceleration.dot(&w.x) + u.x.dot(&w.acceleration);
-                    (ends + u.rate.dot(&w.rate) * 2.0) * scale
-                }
+                Coincident(k) => self.ground[k].dot(&self.markers.distance.acceleration),
+                Perpendicular { .. } | Sliding { .. } | Distance | Aligned { .. } => self
+                    .over_products(row, |u, w| {
+                        let ends = u.acceleration.dot(&w.x) + u.x.dot(&w.acceleration);
+                        ends + u.rate.dot(&w.rate) * 2.0
+                    }),
             };
         }
     }
@@ -169,6 +182,13 @@ impl<S: Scalar, R: Iterator<Item = ConstraintRow> + Clone, const D: usize> Rows<
                 Perpendicular { a, b } => {
                     by.axes_a[a].add(&on_factor(&cot, &m.axes_b[b]));
                     by.axes_b[b].add(&on_factor(&cot, &m.axes_a[a]));
+                }
+                Aligned { a, b } => {
+                    for (i, j, half) in [(a, b, 0.5), (b, a, -0.5)] {
+                        let half = S::from(half);
+                        by.axes_a[i].add(&on_factor(&cot, &m.axes_b[j]).scaled(half));
+                        by.axes_b[j].add(&on_factor(&cot, &m.axes_a[i]).scaled(half));
+                    }
                 }
                 Sliding { a } => {
                     by.axes_a[a].add(&on_factor(&cot, &m.distance));

@@ -151,7 +151,7 @@ fn tie<S: Scalar>(
     let (axes, left_out) = match &node.rotations[..] {
         [(_, a), (_, b)] => {
             let (a, b) = (a.normalize(), b.normalize());
-            let about_normal = ConstraintRow::Perpendicular { a: 0, b: 1 };
+            let about_normal = ConstraintRow::Aligned { a: 0, b: 1 };
             ([a, b, a.cross(&b)], vec![about_normal])
         }
         _ => ([0, 1, 2].map(|k| Vec3::ith(k, 1.0)), Vec::new()),
