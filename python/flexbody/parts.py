@@ -2677,8 +2677,9 @@ class element_frames(Kinds):
     @staticmethod
     @checked
     def chord(value: Sequence[str], /) -> ElementFrame:
-        """Three sets of one node: the first does not move, the second stays on the line from the first, the third in the
-        plane of all.
+        """Three sets of one node: the first does not move, the second moves along the axis of the mesh that is nearest
+        to the line from the first, the third does not move along the axis that is nearest to the normal of their
+        plane.
 
         Parameters
         ----------

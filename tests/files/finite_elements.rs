@@ -55,7 +55,7 @@ fn kept_factors_serve_plates_that_turn() {
     let counts = motion.at.run.counts;
     assert!(counts.factorisations <= 30, "{}", counts.factorisations);
     let iterations = counts.newton_iterations;
-    assert!(10 * iterations <= 51 * steps, "{iterations}");
+    assert!(10 * iterations <= 52 * steps, "{iterations}");
 }
 
 /// A strip of thin shells bends far. Its forces have more round-off than Newton's method asks of other scenes:

@@ -104,20 +104,24 @@ fn a_force_in_the_plane_softens_the_beam_across() {
         // Near the critical load its third digit counts.
         let tolerance = 1e-3 + 4e-3 * part.powi(2) / (1.0 - part.powi(2));
         assert!((ratio - 1.0).abs() < tolerance, "{part}: {ratio}");
-        for body in [
-            by_functions("clamped", [5, 5, 4]),
-            by_functions("chord", [5, 5, 4]),
-            by_functions("clamped", [2, 5, 4]),
-            by_functions("clamped", [3, 8, 4]),
-            by_functions("clamped", [4, 8, 8]),
-            by_functions("clamped", [8, 5, 4]),
-            by_functions("chord", [3, 7, 5]),
-            by_elements(),
+        // Parts of the critical load by which it differs. The bending in the plane, which is 1/400 of that across, counts from
+        // here on, and in chord axes the section that is welded turns by it.
+        let (clamped, chord) = (2.5e-3, 6e-3);
+        for (body, apart) in [
+            (by_functions("clamped", [5, 5, 4]), clamped),
+            (by_functions("chord", [5, 5, 4]), chord),
+            (by_functions("clamped", [2, 5, 4]), clamped),
+            (by_functions("clamped", [3, 8, 4]), clamped),
+            (by_functions("clamped", [4, 8, 8]), clamped),
+            (by_functions("clamped", [8, 5, 4]), clamped),
+            (by_functions("chord", [3, 7, 5]), chord),
+            (by_elements(), clamped),
         ] {
             let moves = value(&moving(&body, part), "w");
             println!("{part}: {}", moves / rest - 1.0);
+            let tolerance = 1e-6 + 2.0 * apart * part.powi(2) / (1.0 - part.powi(2));
             assert!(
-                (moves / rest - 1.0).abs() < 0.01 + 0.03 * part * part,
+                (moves / rest - 1.0).abs() < tolerance,
                 "{part}: {moves} {rest}"
             );
         }
