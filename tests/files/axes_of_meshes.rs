@@ -1,5 +1,6 @@
 //! A flexible body bends alike in whatever axes its mesh is written.
 
+use super::turned_scenes::{rows_of, turned};
 use crate::reference::documents::values;
 use nalgebra::{Rotation3, Vector3};
 use serde_json::Value;
@@ -7,13 +8,7 @@ use serde_json::Value;
 /// A bracket of two tubes welded to ground, a weight at its tip, at rest under an oblique gravity. The mesh is written in
 /// axes turned by `axes`, and placed turned back.
 fn bracket(axes: &Rotation3<f64>) -> Value {
-    let turned = |x: [f64; 3]| {
-        let x = axes * Vector3::from(x);
-        json!([x.x, x.y, x.z])
-    };
-    let back: Vec<Vec<f64>> = (0..3)
-        .map(|i| (0..3).map(|j| axes[(j, i)]).collect())
-        .collect();
+    let turned = |x: [f64; 3]| turned(axes, x);
     let member = |ends: [&str; 2]| json!({"between": ends, "orientation": turned([0.0, 1.0, 0.0]), "elements": 6});
     let frame = json!({
         "points": {
@@ -33,7 +28,7 @@ fn bracket(axes: &Rotation3<f64>) -> Value {
                     "frame": {"clamped": "root"},
                     "points": {"root": {"node": "root"}, "tip": {"node": "tip"}}
                 },
-                "place": {"turn": {"matrix": back}}
+                "place": {"turn": {"matrix": rows_of(&axes.inverse())}}
             },
             "W": {"shape": {"box": {"size": [0.1, 0.1, 0.1]}}, "mass": 1,
                 "place": {"put": [-0.4, 0.3, 0.1], "at": "A.tip"}}

@@ -1,6 +1,7 @@
 //! Critical speeds of stiff and elastic rotors about any axis, and their derivatives.
 
 use super::steady_rotation::assert_near;
+use super::turned_scenes::{rows_of, turned};
 use crate::reference::documents::{problem as parsed, read, values};
 use crate::reference::gradients::gradients_are_exact;
 use flexbody_driver::check;
@@ -44,17 +45,11 @@ fn the_critical_speed_is_the_same_about_oblique_axes() {
             0 => nalgebra::Rotation3::identity(),
             _ => nalgebra::Rotation3::new(axis.normalize() * (0.4 * f64::from(k))),
         };
-        let at = |x: [f64; 3]| {
-            let x = turn * nalgebra::Vector3::from(x);
-            json!([x.x, x.y, x.z])
-        };
-        let rows: Vec<Vec<f64>> = (0..3)
-            .map(|i| (0..3).map(|j| turn[(i, j)]).collect())
-            .collect();
+        let at = |x: [f64; 3]| turned(&turn, x);
         file["turning"]["axis"] = at([1.0, 0.0, 0.0]);
         file["bodies"] = json!({"d": {
             "mass": mass, "inertia": {"xx": along, "yy": across, "zz": across},
-            "place": {"at": at([0.5, 0.0, 0.0]), "turn": {"matrix": rows}}}});
+            "place": {"at": at([0.5, 0.0, 0.0]), "turn": {"matrix": rows_of(&turn)}}}});
         let springs = |from_centre: f64| {
             let mut all = Map::new();
             for s in 0..count {
@@ -85,13 +80,7 @@ fn the_critical_speed_is_the_same_about_oblique_axes() {
 #[test]
 fn a_derivative_of_a_pair_may_be_zero() {
     let turn = nalgebra::Rotation3::new(nalgebra::Vector3::new(0.3, -0.8, 0.5));
-    let at = |x: [f64; 3]| {
-        let x = turn * nalgebra::Vector3::from(x);
-        json!([x.x, x.y, x.z])
-    };
-    let rows: Vec<Vec<f64>> = (0..3)
-        .map(|i| (0..3).map(|j| turn[(i, j)]).collect())
-        .collect();
+    let at = |x: [f64; 3]| turned(&turn, x);
     let bearing = |between: Value, place: f64| {
         json!({"free": {"between": between, "at": at([0.0, 0.0, place]),
             "axis": at([0.0, 0.0, 1.0]), "cross": at([1.0, 0.0, 0.0])}})
@@ -103,7 +92,7 @@ fn a_derivative_of_a_pair_may_be_zero() {
     let file = json!({
         "version": 1, "name": "rotor", "analysis": "modes", "gravity": [0, 0, 0],
         "bodies": {"d": {"mass": 1.9, "inertia": {"xx": 0.2, "yy": 0.2, "zz": 0.26},
-            "place": {"at": at([0.0, 0.0, 0.7]), "turn": {"matrix": rows}}}},
+            "place": {"at": at([0.0, 0.0, 0.7]), "turn": {"matrix": rows_of(&turn)}}}},
         "joints": {"a": bearing(json!(["ground", "d"]), 0.0), "b": bearing(json!(["d", "ground"]), 1.2)},
         "loads": {"at a": support("a", [1900.0, 1200.0]), "at b": support("b", [1000.0, 1500.0])},
         "turning": {"axis": at([0.0, 0.0, 1.0]), "speed": 15},
@@ -136,8 +125,8 @@ fn elastic_rotors_are_the_same_about_oblique_axes() {
         let k = f64::from(k);
         let axis = nalgebra::Vector3::new(0.3 + k, 1.0 - 0.7 * k * k, 0.9 - k).normalize();
         let angle = 0.37 * k;
-        let turned = nalgebra::Rotation3::new(axis * angle) * nalgebra::Vector3::x();
-        file["turning"] = json!({"axis": [turned.x, turned.y, turned.z], "speed": 400});
+        let along = turned(&nalgebra::Rotation3::new(axis * angle), [1.0, 0.0, 0.0]);
+        file["turning"] = json!({"axis": along, "speed": 400});
         file["use"] = json!({"a": {"part": "rotor", "turn": {"axis": [axis.x, axis.y, axis.z], "angle": angle}}});
         let found = values(&file);
         assert_near(&found, first.get_or_insert_with(|| found.clone()), 1e-9);

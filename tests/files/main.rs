@@ -72,6 +72,7 @@ mod stress_per_thickness;
 mod stress_pictures;
 mod thickness_sheet;
 mod trebuchets;
+mod turned_scenes;
 mod unfollowed;
 mod vibrations_at_an_instant;
 mod vibrations_at_rest;
