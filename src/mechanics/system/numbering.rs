@@ -20,6 +20,8 @@ pub struct Numbering {
     unknown: Vec<usize>,
     constraint: Vec<usize>,
     near: Option<Arc<Near>>,
+    /// Rows of B, by velocity; none if v = u.
+    rows: Arc<[[(usize, f64); 2]]>,
 }
 
 impl Numbering {
@@ -33,12 +35,31 @@ impl Numbering {
             all
         };
         let mobility: Vec<Mobility> = model.bodies.iter().map(|body| body.mobility).collect();
-        Self {
+        let all = Self {
             unknown: offsets(&mut mobility.iter().map(Mobility::unknowns)),
             mobility,
             constraint: offsets(&mut model.joints.iter().map(|joint| joint.rows().count())),
             near: Near::new(model).map(Arc::new),
+            rows: Arc::default(),
+        };
+        let count = match all.is_reduced() {
+            true => all.velocities(),
+            false => 0,
+        };
+        let rows = (0..count).map(|place| {
+            let (body, k) = (place / 6, place % 6);
+            let at = all.unknown(body);
+            all.mobility[body].row(k).map(|(own, by)| (at + own, by))
+        });
+        Self {
+            rows: rows.collect(),
+            ..all
         }
+    }
+
+    /// A row of v = B u, for u that has fewer components: pairs of an index in u and an entry. A zero entry is a filler.
+    pub(crate) fn row(&self, place: usize) -> [(usize, f64); 2] {
+        self.rows[place]
     }
 
     /// The contacts between bodies by pairs, if there are many.

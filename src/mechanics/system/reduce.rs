@@ -188,10 +188,8 @@ pub fn shares(numbering: &Numbering, parts: usize, place: usize) -> [(usize, f64
     if part >= parts {
         return [(place - parts * (nv - nu), 1.0), (0, 0.0)];
     }
-    let within = place % nv;
-    let (body, k) = (within / 6, within % 6);
-    let at = part * nu + numbering.unknown(body);
-    (numbering.mobility(body).row(k)).map(|(place, share)| (at + place, share))
+    let own = numbering.row(place - part * nv);
+    own.map(|(place, share)| (part * nu + place, share))
 }
 
 impl<S: Scalar> Emit<S> for Reduced<'_, S> {
