@@ -1,8 +1,11 @@
 //! Parts and their uses, and defaults: the same scene as one that is written out, exact derivatives, faults with their place.
 
+use crate::reference::documents::{faults_say, values};
 use flexbody_driver::check;
 use flexbody_driver::evaluate::Evaluated;
 use flexbody_problem::{Override, Problem};
+use nalgebra::{Unit, UnitQuaternion, Vector3};
+use serde_json::Value;
 
 /// A machine of a chassis on a rail and uses of an arm of two links.
 fn machine(uses: &str, rest: &str) -> String {
@@ -649,4 +652,90 @@ fn faults_of_parts_have_their_place() {
             "{to} {line}:\n{found}"
         );
     }
+}
+
+/// Directions that a load or a joint gives, or has by default, turn with the part. The spatial motion of a rod on a surface, and of
+/// what air and a bushing hold, has the same energies wherever the part stands, in gravity that turns with it.
+#[test]
+fn directions_turn_with_their_part() {
+    let turn = |axis: [f64; 3], angle: f64, v: [f64; 3]| {
+        let n = Unit::new_normalize(Vector3::from(axis));
+        let v = UnitQuaternion::from_axis_angle(&n, angle) * Vector3::from(v);
+        [v.x, v.y, v.z]
+    };
+    let (axis, angle) = ([0.3, 0.8, -0.7], 2.3);
+    let contact = |more: Value| {
+        let mut own = json!({
+            "between": ["b", "ground"], "at": {"a": [0, 0, 0], "b": [0, 0, 0]}, "radius": 0.08, "stiffness": 3000,
+            "dissipation": 0.2, "width": 0.001, "friction": {"coefficient": 0.4, "width": 0.05},
+            "surface": {"plane": {"normal": [0, 1, 0]}}
+        });
+        for (key, value) in more.as_object().expect("an object") {
+            own[key] = value.clone();
+        }
+        json!({"l": {"contact": own}})
+    };
+    let heights = json!({"normal": [0, 1, 0], "direction": [1, 0, 0], "along": [-1, 0, 0.5, 2],
+                         "across": [-1, 0, 2], "heights": [[0, 0.1, 0, 0], [0, 0, 0.1, 0.05], [0, 0, 0, 0]]});
+    let stiffness = json!({"diagonal": [10, 100, 1000, 1, 2, 3]});
+    let free = |axes: Value| {
+        let mut own = json!({"between": ["b", "ground"], "at": [0.1, 0.3, 0]});
+        for (key, value) in axes.as_object().expect("an object") {
+            own[key] = value.clone();
+        }
+        json!({"f": {"free": own}})
+    };
+    let scenes = [
+        (contact(json!({"half": [0.1, 0.02, 0.05]})), json!({})),
+        (
+            contact(json!({"wheel": {"axis": [0.2, 0.3, 1], "radius": 0.15}})),
+            json!({}),
+        ),
+        (
+            contact(json!({"surface": {"height_field": heights}})),
+            json!({}),
+        ),
+        (
+            json!({"l": {"drag": {"body": "b", "coefficient": 0.1, "normal": [0.6, 0.8, 0], "normal_coefficient": 3, "width": 0.01}}}),
+            json!({}),
+        ),
+        (
+            json!({"l": {"bushing": {"joint": "f", "stiffness": stiffness}}}),
+            free(json!({})),
+        ),
+        (
+            json!({"l": {"bushing": {"joint": "f", "stiffness": stiffness}}}),
+            free(json!({"axis": [1, 0.2, 0.1]})),
+        ),
+    ];
+    for (loads, joints) in scenes {
+        let at = |angle: f64| {
+            let file = json!({
+                "version": 1, "name": "turned", "gravity": turn(axis, angle, [1, -9, 2].map(f64::from)),
+                "simulation": {"duration": 0.3, "tolerance": 1e-10},
+                "functions": {"speed": {"final": {"speed": {"body": "u/b"}}}, "energy": {"final": {"energy": "kinetic"}}},
+                "parts": {"p": {
+                    "bodies": {"b": {
+                        "shape": {"box": {"size": [0.2, 0.1, 0.4]}}, "mass": 1,
+                        "place": {"at": [0.1, 0.3, 0], "turn": {"y": 70}},
+                        "velocity": {"linear": [0.5, 0, 0.2], "angular": [1, 2, 3]}
+                    }},
+                    "loads": loads, "joints": joints
+                }},
+                "use": {"u": {"part": "p", "at": [0.3, -0.4, 0.2], "turn": {"axis": axis, "angle": angle}}}
+            });
+            values(&file)
+        };
+        for (a, b) in at(0.0).into_iter().zip(at(angle)) {
+            assert!((a - b).abs() < 1e-7 * a.abs(), "{a} {b}: {loads}");
+        }
+    }
+    // The box of ground has its axes.
+    let boxed = contact(json!({"surface": {"box": {"size": [1, 0.1, 1]}}}));
+    let file = json!({
+        "version": 1, "name": "turned", "simulation": {"duration": 0.3}, "functions": {"T": "duration"},
+        "parts": {"p": {"bodies": {"b": {"shape": {"sphere": {"radius": 0.1}}, "mass": 1}}, "loads": boxed}},
+        "use": {"u": {"part": "p", "turn": {"x": 30}}}
+    });
+    faults_say(&file, &["a box of ground", "a part that is turned"]);
 }

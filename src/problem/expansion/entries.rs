@@ -8,6 +8,17 @@ use crate::placement::GROUND;
 use crate::pointer::join;
 use serde_json::{Map, Value};
 
+/// Directions in ground axes of loads, beside `direction`, which may have others.
+const DIRECTIONS: &[&[&str]] = &[
+    &["normal"],
+    &["half"],
+    &["wheel", "axis"],
+    &["surface", "plane", "normal"],
+    &["surface", "capsule", "half"],
+    &["surface", "height_field", "normal"],
+    &["surface", "height_field", "direction"],
+];
+
 impl Writer<'_> {
     /// Moves a vector of the part: a point, or a direction.
     fn moved(&mut self, used: &Used, value: Option<&mut Value>, pointer: &str, is_point: bool) {
@@ -182,17 +193,28 @@ impl Writer<'_> {
             }
             own => self.moved(used, own, &at, true),
         }
+        if pointer.ends_with("/free") && used.frame.rotation.is_some() {
+            write_axes(entry);
+        }
         for key in ["axis", "cross"] {
             match entry.get_mut(key) {
                 Some(Value::Object(of_body)) => used.rename_body(of_body.get_mut("body")),
                 own => self.moved(used, own, &join(pointer, key), false),
             }
         }
-        for (kind, key) in [("plane", "normal"), ("capsule", "half")] {
-            let surface = entry.get_mut("surface");
-            let surface = surface.and_then(|surface| surface.get_mut(kind));
-            let own = surface.and_then(|surface| surface.get_mut(key));
-            let place = join(&join(&join(pointer, "surface"), kind), key);
+        let is_box = (entry.get("surface")).is_some_and(|own| own.get("box").is_some());
+        if is_box && on_ground[1] && used.frame.rotation.is_some() {
+            let found = "a box of ground, which has its axes, in a part that is turned";
+            let finding = Finding::new(join(pointer, "surface"), found, "a box of a body");
+            self.findings.push(finding);
+        }
+        for path in DIRECTIONS {
+            let mut own = Some(&mut *entry);
+            let mut place = pointer.to_owned();
+            for key in *path {
+                own = own.and_then(|own| own.get_mut(key));
+                place = join(&place, key);
+            }
             self.moved(used, own, &place, false);
         }
         if entry.get("axes").is_none_or(|axes| axes == GROUND) {
@@ -200,4 +222,22 @@ impl Writer<'_> {
             self.moved(used, entry.get_mut("direction"), &direction, false);
         }
     }
+}
+
+/// Writes the axes that a free joint has by default, so that they turn with it: the third ground axis, and the one that is
+/// farthest from its axis.
+fn write_axes(joint: &mut Value) {
+    let Value::Object(joint) = joint else { return };
+    let axis = joint
+        .entry("axis")
+        .or_insert_with(|| [0.0, 0.0, 1.0].into());
+    let numbers = axis.as_array().into_iter().flatten();
+    let numbers: Vec<f64> = numbers.filter_map(Value::as_f64).map(f64::abs).collect();
+    let [x, y, z] = numbers[..] else { return };
+    let cross = match (x <= y && x <= z, y <= z) {
+        (true, _) => [1.0, 0.0, 0.0],
+        (_, true) => [0.0, 1.0, 0.0],
+        _ => [0.0, 0.0, 1.0],
+    };
+    joint.entry("cross").or_insert_with(|| cross.into());
 }
