@@ -38,16 +38,24 @@ impl<S: Scalar> FunctionBuilder<'_, S> {
                 let acceleration = Written::Acceleration(component.clone());
                 combined(Operation::Rate, self.quantity(&acceleration))
             }
-            Written::Power(PowerOf::Load(name)) => Quantity::Of(Instant::Power(self.load(name))),
+            Written::Power(PowerOf::Load(name)) => {
+                Quantity::Of(Instant::Power(Some(self.load(name))))
+            }
             Written::Power(PowerOf::Drive(name)) => self.power_of_drive(name),
             other => Quantity::Of(self.instant(other)),
         }
     }
 
-    /// Moment times rate about the axis, plus force times rate along it. Nothing else bears them there.
+    /// Moment times rate about the axis, plus force times rate along it. Nothing else bears them there while the drive is
+    /// on; while it is off, it has none.
     fn power_of_drive(&self, name: &str) -> Quantity<S> {
         let drive = &self.document.drives[name];
         let joint = self.joint(&drive.joint);
+        let is_off = |phase| !self.document.is_on(name, phase);
+        let of_joint = |phase| !self.document.is_on(&drive.joint, phase);
+        if (self.document.phase).is_some_and(|phase| is_off(phase) || of_joint(phase)) {
+            return Quantity::Of(Instant::Power(None));
+        }
         let along = self.frames[joint][2];
         let part = |part, dof| {
             let reaction = Instant::Reaction(Wrench {

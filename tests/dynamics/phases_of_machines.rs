@@ -422,3 +422,78 @@ fn events_at_once_are_named() {
     let time = 1.0;
     assert!((at.value(number(&own, "time")) - time).abs() < 1e-9);
 }
+
+/// The power of a drive counts while it is on: two drives turn a box, one after the other, by jerks of its speed.
+#[test]
+fn a_drive_that_is_off_has_no_power() {
+    let document = json!({
+        "version": 1, "name": "two drives", "gravity": [0, 0, 0],
+        "bodies": {"b": {"shape": {"box": {"size": [1, 1, 0.1]}}, "mass": 6}},
+        "joints": {"h": {"revolute": {"between": ["b", "ground"], "at": [0, 0, 0], "axis": [0, 0, 1]}}},
+        "drives": {
+            "first": {"joint": "h", "turn": {"polynomial": [0, 0, 0.5]}},
+            "second": {"joint": "h", "turn": {"polynomial": [0, 1, 1]}}
+        },
+        "simulation": {"duration": 2, "tolerance": 1e-10},
+        "events": {"e": {"when": {"time": 1}, "off": ["first"], "on": ["second"]}},
+        "functions": {
+            "work of first": {"integral": {"power": {"drive": "first"}}},
+            "work of second": {"integral": {"power": {"drive": "second"}}}
+        }
+    });
+    let own = problem(&document);
+    let at = Simulated::of(&own, &own.start()).expect("a motion");
+    // ∫ J φ̈ φ̇ with φ̈ = φ̇ = t, then φ̈ = 2 and φ̇ = 1 + 2 (t − 1).
+    for (name, exact) in [("work of first", 0.5), ("work of second", 8.0)] {
+        let f = own.function_names.iter().position(|own| own == name);
+        let found = at.value(f.expect("a function"));
+        assert!((found - exact).abs() < 1e-8, "{name}: {found}");
+    }
+}
+
+/// After a drive has gone off its joint may bear more than it: a weld beside it shares all reactions. That is no matter of the drive,
+/// and what has no value in a phase is told without a panic.
+#[test]
+fn a_weld_beside_the_joint_of_a_drive_that_was_on() {
+    let file = |on: bool| {
+        let mut file = json!({
+            "version": 1, "name": "latched", "gravity": [0, 0, 0],
+            "bodies": {"b": {"shape": {"box": {"size": [0.4, 0.1, 0.1]}}, "mass": 1, "points": {"e": [-0.2, 0, 0]},
+                             "place": {"put": "e", "at": [0.2, 0.1, 0]}}},
+            "joints": {
+                "f": {"revolute": {"between": ["b", "ground"], "at": "b.e", "axis": [0, 0, 1]}},
+                "lk": {"weld": {"between": ["b", "ground"], "at": "b.e"}}
+            },
+            "drives": {"m": {"joint": "f", "turn": {"rate": 1}}},
+            "events": {"e1": {"when": {"time": 0.2}, "off": ["m"]}, "e2": {"when": {"time": 0.5}, "on": ["lk"]}},
+            "simulation": {"duration": 1},
+            "functions": {
+                "W": {"integral": {"power": {"drive": "m"}}},
+                "a": {"final": {"angle": {"joint": "f"}}},
+                "mean": {"over_cases": {"function": "a", "by": "mean"}}
+            },
+            "cases": {"falls": {"set": {"/gravity": [0, -3, 0]}}},
+            "variables": {"mass": {"path": "/bodies/b/mass", "lower": 0.5, "upper": 2}},
+            "objective": {"minimise": "mean"}
+        });
+        if on {
+            file["functions"]["R"] =
+                json!({"integral": {"joint_moment": {"joint": "f", "direction": [0, 0, 1]}}});
+        }
+        file
+    };
+    let own = problem(&file(false));
+    let at = Simulated::of(&own, &own.start()).expect("a motion");
+    let work = own
+        .function_names
+        .iter()
+        .position(|name| name.starts_with('W'));
+    let work = at.value(work.expect("a function"));
+    // The drive turns the box by 0.2 rad against gravity; its rate does not change.
+    let lift = 0.2 * 3.0 * 0.2_f64.sin();
+    assert!((work - lift).abs() < 1e-6, "{work} {lift}");
+    assert!(check(&own, &own.start()).is_ok());
+    let own = problem(&file(true));
+    let found = check(&own, &own.start());
+    assert!(found.is_err() || found.is_ok_and(|all| !all.is_empty()));
+}

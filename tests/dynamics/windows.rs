@@ -94,7 +94,7 @@ fn quantities(model: &Model<f64>) -> Vec<Quantity<f64>> {
         ),
         combined(Operation::Absolute { width: 0.1 }, vec![position()]),
     ];
-    all.extend(loads.map(|load| Quantity::Of(Instant::Power(load))));
+    all.extend(loads.map(|load| Quantity::Of(Instant::Power(Some(load)))));
     all
 }
 

@@ -8,6 +8,7 @@ use crate::integration::Integration;
 use crate::math::Complex64;
 use crate::math::scalar::COMPLEX_STEP;
 use crate::problem::{Cases, Problem};
+use std::collections::HashMap;
 use std::sync::Arc;
 
 /// Derivatives of every function in every variable at the design `x`, function by function.
@@ -20,8 +21,8 @@ pub(super) fn check(
 ) -> Result<Vec<CheckedDerivative>, AnalysisFailure> {
     let (composition, count) = (&problem.composition, x.len());
     let mut all: Vec<CheckedDerivative> = Vec::new();
+    let mut first = 0;
     for case in &cases.list {
-        let first = all.len() / count.max(1);
         let found = super::check(&case.problem, x);
         let found = found.map_err(|failure| AnalysisFailure::InCase {
             case: case.name.clone(),
@@ -31,6 +32,7 @@ pub(super) fn check(
             function: first + own.function,
             ..own
         }));
+        first += case.problem.function_names.len();
     }
     if composition.list.is_empty() {
         return Ok(all);
@@ -39,7 +41,20 @@ pub(super) fn check(
     let mut integration = Integration::of(problem, Some(&which), true);
     let (at, _) = InCases::<Analysed>::with(&mut integration, (problem, cases), x, &which)?;
     let values: Vec<f64> = which.iter().map(|&k| at.value(k)).collect();
-    let of = |k: usize, i: usize| &all[k * count + i];
+    // A function without a value has no derivatives.
+    let numbered = all.iter().map(|own| ((own.function, own.variable), own));
+    let numbered: HashMap<(usize, usize), &CheckedDerivative> = numbered.collect();
+    let of = |k: usize, i: usize| {
+        let unknown = CheckedDerivative {
+            function: k,
+            variable: i,
+            adjoint: f64::NAN,
+            complex_step: f64::NAN,
+            terms: f64::NAN,
+            in_use: f64::NAN,
+        };
+        numbered.get(&(k, i)).map_or(unknown, |own| (*own).clone())
+    };
     let complex = |i: usize| {
         let unit = |j: usize| if i == j { COMPLEX_STEP } else { 0.0 };
         let x = x.iter().enumerate();
@@ -55,7 +70,7 @@ pub(super) fn check(
         let moving = || partials.by_function.iter().filter(|(_, by)| *by != 0.0);
         for (variable, &direct) in partials.by_variable.iter().enumerate() {
             let sum = |of_one: &dyn Fn(&CheckedDerivative) -> f64| -> f64 {
-                moving().map(|&(k, by)| by * of_one(of(k, variable))).sum()
+                moving().map(|&(k, by)| by * of_one(&of(k, variable))).sum()
             };
             let terms = moving().map(|&(k, by)| (by * of(k, variable).terms).abs());
             composed.push(CheckedDerivative {

@@ -283,7 +283,7 @@ impl<S: Scalar> Function<S> {
             Instant::Slide(joint) => Some(Part::Joint(joint)),
             Instant::JointRate { joint, .. } => Some(Part::Joint(joint)),
             Instant::Load(measure) => Some(Part::Load(&mut measure.load)),
-            Instant::Power(load) => Some(Part::Load(load)),
+            Instant::Power(load) => Some(Part::Load(load.as_mut()?)),
             _ => None,
         })
         .collect()

@@ -201,8 +201,8 @@ pub enum Instant<S> {
     },
     /// A point as seen from another body \[m or m/s\].
     Seen(Seen<S>),
-    /// Power by which a load drives its bodies \[W\].
-    Power(usize),
+    /// Power by which a load drives its bodies \[W\]; zero of what is off.
+    Power(Option<usize>),
     /// A number of a vibration of the whole machine about its state at the instant.
     Vibration(OfVibration),
     /// Rate of body A of a joint against body B about or along its axis \[rad/s or m/s\].

@@ -147,7 +147,9 @@ impl<S: Scalar> Instant<S> {
                 direction.dot(&motion.rotation.tr_mul(&a))
             }
             Instant::Seen(seen) => seen.value(at),
-            Instant::Power(load) => work::power(&at.in_motion(&at.motions()), *load),
+            Instant::Power(load) => load.map_or_else(S::zero, |load| {
+                work::power(&at.in_motion(&at.motions()), load)
+            }),
             Instant::Vibration(of) => of.value(at),
             Instant::JointRate { joint, dof } => {
                 work::joint_rate(&at.in_motion(&at.motions()), (*joint, *dof))
@@ -369,7 +371,8 @@ impl Instant<f64> {
             }
             (Instant::Seen(seen), Instant::Seen(own)) => seen.pull_back(at, weight, out, own),
             (Instant::Vibration(of), _) => of.pull_back(at, weight, out),
-            (Instant::Power(load), _) => {
+            (Instant::Power(None), _) => {}
+            (Instant::Power(Some(load)), _) => {
                 let motions = at.motions();
                 let mut to = out.of_states();
                 let here = at.in_motion(&motions);
