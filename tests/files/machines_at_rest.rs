@@ -666,3 +666,32 @@ fn joints_at_one_place_of_a_beam_share_it() {
         gradients_are_exact(&parsed(&document), &document);
     }
 }
+
+/// A machine with a screw comes to the same rest at every size: lengths, gravity and the lead grow alike.
+#[test]
+fn couplings_come_to_rest_at_every_size() {
+    let file = |l: f64| {
+        let size = |of: [f64; 3]| json!(of.map(|x| x * l));
+        json!({
+            "version": 1, "name": "arm", "analysis": "rest", "gravity": [0, -9.81 * l, 0],
+            "bodies": {
+                "arm": {"shape": {"box": {"size": size([0.8, 0.1, 0.06])}}, "mass": 2, "place": {"at": size([0.4, 0.0, 0.0])}},
+                "nut": {"shape": {"box": {"size": size([0.2, 0.1, 0.1])}}, "mass": 0.7, "place": {"at": size([0.5, 0.1, 0.2])}}
+            },
+            "joints": {
+                "h": {"revolute": {"between": ["arm", "ground"], "at": [0, 0, 0], "axis": [0, 0, 1]}},
+                "cy": {"cylindrical": {"between": ["nut", "arm"], "at": size([0.5, 0.1, 0.2]), "axis": [1, 0, 0]}}
+            },
+            "loads": {"x": {"spring": {
+                "between": ["nut", "ground"], "at": {"a": [0, 0, 0], "b": size([0.5, 0.8, 0.2])}, "rest_length": 0.2 * l, "stiffness": 60
+            }}},
+            "couplings": {"sc": {"screw": {"joint": "cy", "lead": 0.05 * l}}},
+            "functions": {"a": {"final": {"angle": {"joint": "h"}}}}
+        })
+    };
+    let of_metre = value(&file(1.0), "a");
+    for l in [100.0, 0.3, 0.1, 0.01, 1e-3] {
+        let found = value(&file(l), "a");
+        assert!((found - of_metre).abs() < 1e-6, "{l}: {found} {of_metre}");
+    }
+}

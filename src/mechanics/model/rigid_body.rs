@@ -25,6 +25,11 @@ pub enum Role {
 }
 
 impl Role {
+    /// Whether the position of such a body is an angle, in most cases, and its mass an inertia.
+    pub fn is_angle(self) -> bool {
+        matches!(self, Self::Counter | Self::Coordinate)
+    }
+
     /// Whether the position of such a body is no place: its mass has neither weight nor momentum.
     pub fn is_abstract(self) -> bool {
         matches!(self, Self::Counter | Self::Coordinate | Self::State)

@@ -189,8 +189,12 @@ impl Solver<'_> {
             .map(|(i, body)| {
                 let six = &forces[layout.numbering.velocity(i)..][..6];
                 let size = |x: &[f64]| dot(x, x).sqrt();
+                let [mass, _] = metric.of_body(body);
+                if body.role.is_angle() {
+                    return size(&six[..3]) / mass;
+                }
                 let force = size(&six[..3]).max(size(&six[3..]) / self.scale);
-                force / (metric.of_body(body)[0] * self.scale)
+                force / (mass * self.scale)
             });
         rates.fold(0.0, f64::max)
     }

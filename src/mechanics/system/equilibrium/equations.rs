@@ -65,6 +65,8 @@ pub(super) struct Layout<'a> {
     pub kept: Vec<usize>,
     /// Steady rotation of a machine whose rest in the turning frame is sought.
     pub turning: Option<Turning<f64>>,
+    /// By body: whether its position is an angle.
+    pub angles: Vec<bool>,
 }
 
 fn picked<S: Scalar>(indices: &[usize], x: &[S]) -> Vec<S> {
@@ -89,6 +91,11 @@ impl<'a> Layout<'a> {
             rigid: (0..moves.len()).filter(|&u| moves[u]).collect(),
             kept: Vec::new(),
             turning: given.turning.clone(),
+            angles: model
+                .bodies
+                .iter()
+                .map(|body| body.role.is_angle())
+                .collect(),
         };
         layout.keep_independent(model, &given.q);
         layout
@@ -166,10 +173,15 @@ impl<'a> Layout<'a> {
     /// `scale`.
     pub(super) fn moved(&self, change: &[f64], scale: f64) -> f64 {
         let y = self.expanded(change[self.groups()[0].clone()].to_vec());
+        let all = y.chunks_exact(6).enumerate();
+        all.fold(0.0, |size, (i, six)| size.max(self.moved_of(i, six, scale)))
+    }
+
+    /// The same of body i, of its six components of y.
+    pub(super) fn moved_of(&self, i: usize, six: &[f64], scale: f64) -> f64 {
         let part = |x: &[f64]| dot(x, x).sqrt();
-        y.chunks_exact(6).fold(0.0_f64, |size, six| {
-            size.max(part(&six[..3]) / scale).max(part(&six[3..]))
-        })
+        let of_place = if self.angles[i] { 1.0 } else { scale };
+        (part(&six[..3]) / of_place).max(part(&six[3..]))
     }
 
     pub(super) fn compressed<S: Scalar>(&self, mut x: Vec<S>) -> Vec<S> {
@@ -329,8 +341,9 @@ impl<'a> Layout<'a> {
             let mut g = still.clone();
             joints::add_reactions(model, numbering, &gradients, &unit, &mut g);
             // Rotations as displacements at the length scale.
-            for six in g.chunks_exact_mut(6) {
-                six[3..].iter_mut().for_each(|x| *x /= scale);
+            for (i, six) in g.chunks_exact_mut(6).enumerate() {
+                let first = if self.angles[i] { 0 } else { 3 };
+                six[first..].iter_mut().for_each(|x| *x /= scale);
             }
             let mut g = picked(&self.rigid, &self.compressed(g));
             let before = dot(&g, &g).sqrt();

@@ -93,9 +93,14 @@ impl RigidMetric {
         }
     }
 
-    /// Mass \[kg\] of a body, and the moment of inertia \[kg m²\] that it has in addition.
+    /// Mass \[kg\] of a body, and the moment of inertia \[kg m²\] that it has in addition. The coordinate of a coupling is an
+    /// angle in most cases, and its mass an inertia.
     pub(super) fn of_body(&self, body: &RigidBody<f64>) -> [f64; 2] {
-        [body.mass + self.mass, self.inertia]
+        let more = match body.role.is_angle() {
+            true => self.inertia,
+            false => self.mass,
+        };
+        [body.mass + more, self.inertia]
     }
 }
 

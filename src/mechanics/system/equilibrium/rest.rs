@@ -320,8 +320,7 @@ impl Solver<'_> {
         let all = layout.expanded(y.to_vec());
         let size = |i: usize| {
             let six = &all[layout.numbering.velocity(i)..][..6];
-            let part = |x: &[f64]| dot(x, x).sqrt();
-            (part(&six[..3]) / self.scale).max(part(&six[3..]))
+            layout.moved_of(i, six, self.scale)
         };
         let bodies = || (0..self.model.bodies.len()).filter(|&i| !self.model.is_internal(i));
         let largest = bodies().map(size).fold(0.0, f64::max);
