@@ -382,3 +382,36 @@ fn units_of_mass_do_not_change_a_basis() {
         }
     }
 }
+
+/// The edge at which the frame is clamped holds the axes, in whatever order the points are written.
+#[test]
+fn the_frame_names_the_edge_that_holds_the_axes() {
+    let file = |order: [&str; 2]| {
+        let mut points = serde_json::Map::new();
+        for name in order {
+            let edge = if name == "root" { "x0" } else { "x1" };
+            points.insert(name.to_owned(), json!({"rigid": edge}));
+        }
+        json!({
+            "version": 1, "name": "arm", "materials": {"m": {"young": 7e9, "poisson": 0.3, "density": 2700}},
+            "bodies": {
+                "A": {
+                    "elements": {
+                        "structure": {"mesh": {"plate": {"length": 1, "width": 0.1, "elements": [4, 1]}}, "material": "m", "thickness": 0.02},
+                        "frame": {"clamped": "x0"}, "points": points, "basis": {"reduced": {"modes": 3}}
+                    },
+                    "place": {"put": "root", "at": [0, 0, 0], "turn": {"x": 90}}
+                },
+                "W": {"shape": {"box": {"size": [0.1, 0.15, 0.2]}}, "mass": 0.8, "place": {"at": [1, 0, 0]}}
+            },
+            "joints": {
+                "h": {"revolute": {"between": ["A", "ground"], "at": "A.root", "axis": [0, 0, 1]}},
+                "k": {"weld": {"between": ["W", "A"], "at": "A.tip"}}
+            },
+            "simulation": {"duration": 0.05, "steps": 50, "method": {"radau": {"stages": 3}}},
+            "functions": {"v": {"final": {"velocity": {"body": "W", "direction": [0.3, 1, 0.2]}}}}
+        })
+    };
+    let [a, b] = [["root", "tip"], ["tip", "root"]].map(|order| values(&file(order))[0]);
+    assert!((a - b).abs() < 1e-10 * a.abs(), "{a} {b}");
+}
