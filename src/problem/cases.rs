@@ -183,6 +183,28 @@ fn of_case(
     }
 }
 
+/// Removes the velocities of bodies and the rates of joints at the start.
+fn stop(document: &mut Value) {
+    for body in values(document.get_mut("bodies")) {
+        if let Value::Object(body) = body {
+            body.shift_remove("velocity");
+        }
+    }
+    for joint in values(document.get_mut("joints")).flat_map(|joint| values(Some(joint))) {
+        for motion in values(joint.get_mut("start")) {
+            if let Value::Object(motion) = motion {
+                motion.retain(|key, _| !["rate", "degrees_per_second"].contains(&key.as_str()));
+            }
+        }
+    }
+}
+
+/// The values of an object.
+fn values(of: Option<&mut Value>) -> impl Iterator<Item = &mut Value> {
+    let all = of.and_then(Value::as_object_mut);
+    all.into_iter().flat_map(|all| all.values_mut())
+}
+
 /// Replaces the values of a document by those of a case.
 fn change(document: &mut Value, (name, case): (&str, &WrittenCase)) -> Result<(), Finding> {
     if let Some(analysis) = case.analysis {
@@ -199,6 +221,9 @@ fn change(document: &mut Value, (name, case): (&str, &WrittenCase)) -> Result<()
             for key in others {
                 entries.shift_remove(key);
             }
+        }
+        if analysis != Analysis::Motion {
+            stop(document);
         }
     }
     for (path, value) in &case.set {

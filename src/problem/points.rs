@@ -13,6 +13,7 @@ use crate::math::scalar::lift3;
 use crate::math::{Dual, Scalar, Vec3};
 use crate::quantity::Quantity;
 use crate::schema::Document;
+use crate::schema::contacts::Surface;
 use crate::schema::joints::{Ends, Joint};
 use crate::schema::loads::Load;
 use crate::schema::mechanics::Shape;
@@ -355,19 +356,18 @@ pub(super) fn beside(problem: &Problem) -> Option<Finding> {
                 }
                 Load::Spring(spring) => ends(&pointer, &spring.between, &spring.at),
                 Load::Contact(own) => ends(&pointer, &own.between, &own.at).or_else(|| {
-                    let sides = own.between.iter();
-                    let is_long = own.half.is_some();
-                    let body = sides
-                        .zip([own.radius.value > 0.0 || is_long, true])
-                        .find(|(body, _)| is_point(body));
-                    let (body, extends) = body?;
-                    let turns = own.friction.is_some() || (is_long && *body == own.between[0]);
-                    (turns && extends).then(|| {
-                        turned(
-                            join(&pointer, "between"),
-                            body,
-                            "friction at the surface of",
-                        )
+                    let is_ball = matches!(own.surface, Surface::Sphere { .. });
+                    let rubs = own.friction.as_ref().map(|_| "friction at the surface of");
+                    let first = match (&own.half, &own.wheel) {
+                        (Some(_), _) => Some("a capsule of"),
+                        (_, Some(_)) => Some("a wheel of"),
+                        _ => rubs.filter(|_| own.radius.value > 0.0),
+                    };
+                    let second = if is_ball { rubs } else { Some("a surface of") };
+                    let mut sides = own.between.iter().zip([first, second]);
+                    sides.find_map(|(body, what)| {
+                        let what = what.filter(|_| is_point(body))?;
+                        Some(turned(join(&pointer, "between"), body, what))
                     })
                 }),
                 Load::Cable(own) => own.points.iter().enumerate().find_map(|(k, own)| {

@@ -321,3 +321,36 @@ fn bad_boxes_and_wheels_are_told() {
         &["/loads/road/contact/wheel/axis", "a wheel that stands"],
     );
 }
+
+/// Nothing turns a point mass: it is no wheel, and has no surface but a ball about itself.
+#[test]
+fn a_point_mass_has_no_wheel_and_no_surface() {
+    let file = |between: [&str; 2], more: Value| {
+        let mut contact = json!({"between": between, "at": {"a": [0, 0, 0], "b": [0, 0, 0]}, "stiffness": 1000, "width": 0.001});
+        for (key, value) in more.as_object().expect("an object") {
+            contact[key] = value.clone();
+        }
+        json!({
+            "version": 1, "name": "point", "gravity": [0, 0, 0],
+            "bodies": {
+                "P": {"shape": "point", "mass": 1, "place": {"at": [0, 0.2, 0]}},
+                "S": {"shape": {"sphere": {"radius": 0.1}}, "mass": 1, "place": {"at": [0.4, 0, 0.3]}}
+            },
+            "loads": {"x": {"contact": contact}},
+            "simulation": {"duration": 0.1},
+            "functions": {"T": "duration"}
+        })
+    };
+    let plane = json!({"plane": {"normal": [0, 1, 0]}});
+    let wheel = json!({"wheel": {"axis": [0, 0, 1], "radius": 0.2}, "surface": plane});
+    faults_say(
+        &file(["P", "ground"], wheel),
+        &["a wheel of \"P\"", "nothing turns a point mass"],
+    );
+    for surface in [plane, json!({"box": {"size": [1, 1, 0.1]}})] {
+        let own = json!({"radius": 0.1, "surface": surface});
+        faults_say(&file(["S", "P"], own), &["a surface of \"P\""]);
+    }
+    let ball = json!({"radius": 0.1, "surface": {"sphere": {"radius": 0.1}}});
+    assert_eq!(values(&file(["S", "P"], ball)), [0.1]);
+}

@@ -649,3 +649,36 @@ fn without_objective_the_nearest_design_holds_in_all_cases() {
     let moved = done.optimum.objective.value;
     assert!(moved > 1e-4, "the start is not feasible: {moved}");
 }
+
+/// A case of modes leaves out the velocities of a motion.
+#[test]
+fn a_case_of_modes_leaves_out_velocities() {
+    let mut file = json!({
+        "version": 1, "name": "arm",
+        "bodies": {"a": {
+            "shape": {"rod": {"length": 0.5, "radius": 0.01}}, "mass": 2, "points": {"p": [-0.25, 0, 0]},
+            "place": {"put": "p", "at": [0, 0, 0], "turn": {"z": -90}}, "velocity": {"linear": [0, 0, 0], "angular": [0, 0, 0]}
+        }},
+        "joints": {"j": {"revolute": {
+            "between": ["a", "ground"], "at": "a.p", "axis": [0, 0, 1], "start": {"turn": {"angle": 0.1, "rate": 0.2}}
+        }}},
+        "simulation": {"duration": 0.4},
+        "cases": {"swings": {"set": {}}, "rings": {"analysis": "modes", "set": {}}},
+        "functions": {"f": {"frequency": {"mode": 1}}}
+    });
+    file["functions"]["e"] = json!({"final": {"energy": "kinetic"}});
+    file["functions"]["f of rings"] =
+        json!({"over_cases": {"function": "f", "by": "sum", "cases": ["rings"]}});
+    let problem = parsed(&file);
+    let at = Simulated::of(&problem, &problem.start()).expect("an analysis");
+    let f = problem
+        .function_names
+        .iter()
+        .position(|name| name == "f of rings");
+    // A rod that swings about its end: ω² = g l/2 / (l²/3 + r²/4).
+    let (l, r) = (0.5_f64, 0.01_f64);
+    let square = 0.5 * 9.81 * l / (l * l / 3.0 + r * r / 4.0);
+    let exact = square.sqrt() / (2.0 * std::f64::consts::PI);
+    let found = at.value(f.expect("a function"));
+    assert!((found - exact).abs() < 1e-9 * exact, "{found} {exact}");
+}

@@ -278,8 +278,8 @@ pub enum IntegrationFailure {
     },
     /// The event that ends the run does not occur, or not where it occurred for earlier designs.
     #[error(
-        "the {quantity} of the event does not reach {value} within {waited} s: it comes as \
-         near as {nearest:.3e}"
+        "the {quantity} of the event does not reach {value} within {waited} s: the smallest \
+         difference from it is {nearest:.3e}"
     )]
     NotReached {
         /// The quantity.

@@ -135,16 +135,21 @@ struct Backwards {
     /// By function of the phases: its weight.
     weights: Vec<(usize, f64)>,
     row: Vec<Derivative>,
-    /// z̄ of the phase that was swept last.
+    /// z̄ of the phase that was swept last, and the sum of the sizes of its terms.
     state: Vec<f64>,
+    terms: f64,
+    /// Of the z̄ with which the next sweep begins: the sizes of its terms by its own size. Its round-off is so much larger.
+    cancelled: f64,
 }
 
 impl Backwards {
     fn add(&mut self, count: usize, found: &[Derivative], by: f64) {
         for (own, more) in self.row.iter_mut().zip(found) {
             own.value += by * more.value;
-            own.terms += (by * more.terms).abs();
+            own.terms += (by * more.terms).abs() * self.cancelled;
         }
+        let of_state = found[count..].iter().map(|own| (by * own.terms).abs());
+        self.terms += of_state.sum::<f64>() * self.cancelled;
         let state = found[count..].iter().map(|own| by * own.value);
         match self.state.is_empty() {
             true => self.state = state.collect(),
@@ -183,6 +188,8 @@ pub(super) fn derivatives(
             weights: weights.into_iter().filter(|(_, by)| *by != 0.0).collect(),
             row: by.into_iter().map(direct).collect(),
             state: Vec::new(),
+            terms: 0.0,
+            cancelled: 1.0,
         }
     };
     let mut sums: Vec<Backwards> = which.iter().map(begin).collect();
@@ -202,6 +209,13 @@ pub(super) fn derivatives(
         let next = all.cases.list.get(p + 1);
         let pulled = |own: &mut Backwards| {
             let state = std::mem::take(&mut own.state);
+            let size: f64 = state.iter().map(|by| by.abs()).sum();
+            let terms = std::mem::take(&mut own.terms);
+            own.cancelled = if size > 0.0 {
+                (terms / size).max(1.0)
+            } else {
+                1.0
+            };
             let moving = next.filter(|_| state.iter().any(|by| *by != 0.0));
             Some(moving?.problem.pull_state(&at.run, &state))
         };
@@ -217,6 +231,7 @@ pub(super) fn derivatives(
         let mut of_ends = of_ends.iter();
         for (own, end) in sums.iter_mut().zip(&ends) {
             let weights = std::mem::take(&mut own.weights);
+            let cancelled = std::mem::replace(&mut own.cancelled, 1.0);
             for &(k, by) in &weights {
                 let place = of_phase(k).and_then(|(_, f)| functions.binary_search(&f).ok());
                 if let Some(place) = place {
@@ -227,6 +242,7 @@ pub(super) fn derivatives(
             if let Some(end) = end
                 && let Some(row) = of_ends.next()
             {
+                own.cancelled = cancelled;
                 own.add(count, row, 1.0);
                 // t_{p+1} = t_p + T_p.
                 if let Some(time) = own.state.last_mut() {
