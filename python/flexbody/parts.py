@@ -1889,7 +1889,7 @@ def balanced(*, body: str, mass: Real, point: Point | None = None) -> Balanced:
     mass : number at least 0 [kg]
         The mass that the controller reckons with.
     point : text or numbers, shape (3,) [m], optional
-        Where it is, by name or in body axes; default the centre of mass.
+        Where it is, by name or in body axes; default as of a force.
         text: Name of one of the body's points.
         numbers, shape (3,) [m]: Coordinates in body axes from their origin.
     """
@@ -3104,7 +3104,8 @@ class loads(Kinds):
             number [N]: The same at all times.
             one of `varying_forces`: A function of time.
         point : text or numbers, shape (3,) [m], optional
-            Point of application, by name or in body axes; default the centre of mass.
+            Point of application, by name or in body axes; default the centre of mass, of a beam its middle; bodies of
+            `elements` and `modal` ones need one.
             text: Name of one of the body's points.
             numbers, shape (3,) [m]: Coordinates in body axes from their origin.
         at : numbers, shape (3,) [m], optional
@@ -3324,7 +3325,7 @@ class loads(Kinds):
             Half the density times the drag coefficient times the area: force against the velocity by the square of
             the speed; for shells without the area.
         point : text or numbers, shape (3,) [m], optional
-            Where it acts, by name or in body axes; default the centre of mass.
+            Where it acts, by name or in body axes; default as of a force.
             text: Name of one of the body's points.
             numbers, shape (3,) [m]: Coordinates in body axes from their origin.
         faces : text, optional

@@ -89,7 +89,7 @@ pub struct Feedback {
 pub struct Balanced {
     /// The body that has it.
     pub body: String,
-    /// Where it is, by name or in body axes; default the centre of mass.
+    /// Where it is, by name or in body axes; default as of a force.
     pub point: Option<Point>,
     /// The mass that the controller reckons with.
     #[schemars(extend("unit" = "kg", "minimum" = 0))]

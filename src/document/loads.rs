@@ -62,7 +62,7 @@ pub enum Load {
 pub struct Force {
     /// The body.
     pub body: String,
-    /// Point of application, by name or in body axes; default the centre of mass.
+    /// Point of application, by name or in body axes; default the centre of mass, of a beam its middle; bodies of `elements` and `modal` ones need one.
     pub point: Option<Point>,
     /// Point of application in ground coordinates at the start, instead of `point`.
     #[schemars(extend("unit" = "m"))]
@@ -323,7 +323,7 @@ pub struct Friction {
 pub struct Drag {
     /// The body.
     pub body: String,
-    /// Where it acts, by name or in body axes; default the centre of mass.
+    /// Where it acts, by name or in body axes; default as of a force.
     pub point: Option<Point>,
     /// Name of the set of shells on which it acts, of a body of elements. The coefficients are then those of an area.
     pub faces: Option<String>,

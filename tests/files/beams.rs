@@ -3,7 +3,7 @@
 //! every parameter; what files may not say.
 
 use super::gmsh::values as static_values;
-use crate::reference::documents::{problem as parsed, run, value};
+use crate::reference::documents::{faults_say, problem as parsed, run, value};
 use crate::reference::gradients::gradients_are_exact;
 use flexbody_driver::simulate;
 use flexbody_problem::Problem;
@@ -375,4 +375,42 @@ fn a_cantilever_needs_few_elements() {
             assert!((own / error - 1.0).abs() < 0.02, "{elements} {k}: {own}");
         }
     }
+}
+
+/// A load without a point acts in the middle of a beam: a free one does not turn, and a compensation bears its weight. Other
+/// flexible bodies have no point there.
+#[test]
+fn loads_without_a_point_act_in_the_middle() {
+    let beam = json!({"beam": {
+        "length": 1, "section": {"rectangle": {"width": 0.1, "height": 0.1}}, "material": {"young": 7e10, "density": 1000},
+        "damping": {"ratio": 0.5}
+    }});
+    let file = |bodies: &Value, loads: Value, joints: Value, function: Value| {
+        json!({
+            "version": 1, "name": "middle", "gravity": if joints.is_null() { json!([0, 0, 0]) } else { json!([0, -9.81, 0]) },
+            "bodies": {"A": bodies}, "loads": loads, "joints": if joints.is_null() { json!({}) } else { joints },
+            "simulation": {"duration": 0.1, "tolerance": 1e-8}, "functions": {"f": function}
+        })
+    };
+    let turns = json!({"final": {"angular_velocity": {"body": "A", "direction": [0, 0, 1]}}});
+    let pushed = json!({"l": {"force": {"body": "A", "direction": [0, 1, 0], "magnitude": 1}}});
+    let mut placed = beam.clone();
+    placed["place"] = json!({"put": "start", "at": [0, 0, 0]});
+    let found = value(
+        &file(&beam, pushed.clone(), Value::Null, turns.clone()),
+        "f",
+    );
+    assert!(found.abs() < 1e-9, "{found}");
+    let joints = json!({"j": {"revolute": {"between": ["A", "ground"], "at": "A.start", "axis": [0, 0, 1]}}});
+    let balanced = json!({"c": {"controller": {"joint": "j", "proportional": 1, "gravity_compensation": [{"body": "A", "mass": 10}]}}});
+    let effort = json!({"final": {"effort": {"load": "c"}}});
+    let found = value(&file(&placed, balanced, joints, effort), "f");
+    assert!((found - 10.0 * 9.81 * 0.5).abs() < 1e-3, "{found}");
+    let plate = json!({"elements": {
+        "structure": {"mesh": {"plate": {"length": 1, "width": 0.1, "elements": [2, 1]}}, "material": "m", "thickness": 0.01},
+        "frame": {"clamped": "x0"}, "points": {"root": {"edge": "x0"}}
+    }});
+    let mut shells = file(&plate, pushed, Value::Null, turns);
+    shells["materials"] = json!({"m": {"young": 7e10, "poisson": 0.3, "density": 2700}});
+    faults_say(&shells, &["no \"point\" on the flexible body \"A\""]);
 }
