@@ -86,6 +86,12 @@ pub(crate) struct RunOptions {
     /// at the end it is the report.
     #[arg(long, conflicts_with_all = ["starts", "sweep"])]
     pub watch: bool,
+    /// Ranks of `optimize-mpi` compute every motion together, if bodies have 16 shells or more.
+    ///
+    /// Each has a part of the factors of the equations and of the forces of elements. The results are the same to the byte. It saves
+    /// memory for factors, and takes longer than one rank in the scenes that were measured.
+    #[arg(long, hide_short_help = true)]
+    pub share_bodies: bool,
     /// Skips the certificate of the gradients.
     ///
     /// It compares one directional derivative of every function by the adjoint with the complex step, at start and

@@ -27,7 +27,7 @@ pub(super) fn one(
     records: &Logs,
     stopped: &dyn Fn() -> bool,
     (quiet, watch): (bool, bool),
-    ranks: Option<&dyn Ranks>,
+    (ranks, share_bodies): (Option<&dyn Ranks>, bool),
 ) -> Result<(Optimisation, Option<ReportError>), Failure> {
     let opened = records.open(Start::Only, problem)?;
     if !quiet {
@@ -64,9 +64,12 @@ pub(super) fn one(
         }
     };
     let state = state.map(|warm| &warm.state);
-    let shared = ranks.and_then(|ranks| ranks.share_cases(problem, state, opened.earlier()));
+    let shared =
+        ranks.and_then(|ranks| ranks.share(problem, share_bodies, state, opened.earlier()));
     if let (Some(_), None, false) = (ranks, &shared, quiet) {
-        tell("one start and no cases: there is nothing to spread over ranks\n");
+        tell(
+            "one start and no cases: there is nothing to spread over ranks, unless --share-bodies asks for it\n",
+        );
     }
     let known = opened.known_evaluations(&fault, (!quiet).then_some(tell));
     let done = driver::optimise_over(problem, file, state, known, shared, &mut progress);

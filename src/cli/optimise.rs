@@ -97,7 +97,7 @@ pub(crate) fn optimise(
                 &records,
                 &stopped,
                 (job.quiet, course.watch),
-                ranks,
+                (ranks, course.share_bodies),
             )?;
             (problem, done, Start::Only, None, lost)
         }

@@ -27,6 +27,7 @@ use crate::integrate::{
     Grid, IntegrationFailure, Limits, Samples, Settings, Spacing, Trajectory, quadrature, simulate,
 };
 use crate::problem::Problem;
+use crate::system::flexible;
 
 /// Estimates the discretisation errors of the functions `which` at a simulated design, and of their
 /// gradients if `gradients`.
@@ -73,7 +74,8 @@ fn of_scene(
         }
         Ok(all)
     };
-    let (coarse, finer) = rayon::join(|| numbers(at, which), || numbers(&fine, which));
+    let team = flexible::team(&at.scene.model);
+    let (coarse, finer) = team.join(|| numbers(at, which), || numbers(&fine, which));
     let (coarse, finer) = (coarse?, finer?);
     let maxima = which.iter().map(|&f| {
         let [coarse, fine] = [at, &fine].map(|of| of.function(f).maximum.map(|m| m.value));

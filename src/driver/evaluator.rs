@@ -61,7 +61,7 @@ impl<'a> Evaluator<'a> {
         Self::shared(problem, log, None)
     }
 
-    /// The same, with its cases spread over ranks, if any.
+    /// The same over ranks, if there are any.
     pub fn shared(
         problem: &'a Problem,
         log: KnownEvaluations<'a>,
@@ -169,6 +169,23 @@ fn no_gradient(problem: &Problem, at: &Analysed, objective: usize) -> Option<Str
     asked.find_map(|f| at.no_derivative(problem, f))
 }
 
+/// Before and after a motion that several ranks compute together, if they do: whether the run goes on.
+///
+/// # Errors
+/// It must end.
+fn meet(
+    (ranks, problem): (Option<&Arc<Shared>>, &Problem),
+    account: &mut EvaluationContext,
+    x: &[f64],
+) -> Result<(), String> {
+    let Some(ranks) = ranks else {
+        return Ok(());
+    };
+    let met = ranks.meet(x, problem.simulation.limits.is_over());
+    account.interrupted |= met.is_err();
+    met.map_err(|lost| lost.to_string())
+}
+
 /// The simulated design `x`: the last one, or a new one.
 fn at<'e>(
     (last, speculative): (&'e mut Option<Analysed>, &mut SpeculativeCache),
@@ -179,11 +196,15 @@ fn at<'e>(
     let found = match last.take().filter(|last| last.x() == x) {
         Some(known) => Ok(known),
         None => {
+            let ranks = integration.shared.clone();
+            let ranks = (ranks.as_ref(), problem);
+            meet(ranks, account, x)?;
             integration.settle(account.settled.as_ref());
             let found = match speculative.take(integration, x) {
                 Some(found) => found.map(|evaluated| (evaluated, None)),
                 None => Analysed::with(integration, problem, x, functions),
             };
+            meet(ranks, account, x)?;
             found.map(|(evaluated, refresh)| {
                 account.refresh = refresh;
                 if !account.repeated {
@@ -344,6 +365,7 @@ impl Nlp for Evaluator<'_> {
                 return Err(why);
             }
             let found = at.gradients(problem, &functions);
+            meet((ranks.as_ref(), problem), account, &x)?;
             let (gradients, work) = found.map_err(|failure| {
                 account.interrupted = is_over();
                 failure.to_string()
@@ -381,8 +403,9 @@ impl Nlp for Evaluator<'_> {
 
     fn residuals(&mut self, x: &[f64]) -> Result<Option<Residuals>, EvaluationFailure> {
         let problem = self.problem;
-        // A fit has no cases.
-        let alone = self.integration.shared.is_none();
+        // A fit has no cases that ranks could share.
+        let ranks = self.integration.shared.as_ref();
+        let alone = ranks.is_none_or(|ranks| ranks.together().is_some());
         let Some(misfits) = fit::fitted(problem).filter(|_| alone) else {
             return Ok(None);
         };

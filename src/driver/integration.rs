@@ -358,6 +358,18 @@ impl Integration {
         refresh
     }
 
+    /// Goes on in one process, which has these limits.
+    pub(super) fn leave_ranks(&mut self, limits: &Limits) {
+        self.shared = None;
+        self.limits = limits.clone();
+        if let Some((settings, _)) = &mut self.chosen {
+            settings.limits = limits.clone();
+        }
+        for own in self.cases.iter_mut().flatten() {
+            own.leave_ranks(limits);
+        }
+    }
+
     /// Whether the run must end, as all ranks know it if its cases are spread.
     pub(super) fn is_over(&self) -> bool {
         match &self.shared {

@@ -4,7 +4,7 @@ use crate::integrate::{IntegrationFailure, Method, Samples, Settings, Spacing};
 use crate::model::Model;
 use crate::problem::available_memory;
 use crate::report::size;
-use crate::system::Numbering;
+use crate::system::{Numbering, flexible};
 
 /// Part of the available memory that gradients may use, and the limit if that is unknown \[bytes\].
 const PART: usize = 2;
@@ -29,6 +29,10 @@ const LITTLE: usize = 1 << 26;
 /// # Errors
 /// [`IntegrationFailure::Memory`].
 pub(super) fn admit(model: &Model<f64>, settings: &Settings) -> Result<(), IntegrationFailure> {
+    // Of several ranks none goes alone.
+    if !flexible::team(model).is_alone() {
+        return Ok(());
+    }
     let numbering = Numbering::new(model);
     let (nq, nv) = (numbering.positions(), numbering.velocities());
     let nc = numbering.constraints();

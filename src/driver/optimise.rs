@@ -67,8 +67,7 @@ pub fn optimise<'a>(
     optimise_over(problem, file, from, log, None, progress)
 }
 
-/// As [`optimise`], with the cases of the problem spread over ranks, if there are any; the others call
-/// [`solve_over`].
+/// As [`optimise`], over ranks, if there are any; the others call [`solve_over`].
 pub fn optimise_over<'a>(
     problem: &'a Problem,
     file: &str,
@@ -90,8 +89,8 @@ pub fn solve<'a>(
     solve_over(problem, from, log, None, progress)
 }
 
-/// As [`solve`], with the cases of the problem spread over ranks, if there are any. All ranks call it with the same
-/// problem, state and known evaluations, and end with the same result.
+/// As [`solve`], over ranks, if there are any. All call it with the same problem, state and known evaluations, and end
+/// with the same result.
 pub fn solve_over<'a>(
     problem: &'a Problem,
     from: Option<&SavedState>,
@@ -99,6 +98,10 @@ pub fn solve_over<'a>(
     ranks: Option<Arc<Shared>>,
     progress: &mut dyn FnMut(&History) -> ControlFlow<()>,
 ) -> Option<Solved> {
+    let together = ranks.as_ref().and_then(|ranks| ranks.together());
+    let together = together.map(|own| problem.together(&own.team, (&own.over, own.memory)));
+    let alone = problem;
+    let problem = together.as_ref().unwrap_or(alone);
     let mut program = Evaluator::shared(problem, log, ranks.clone())?;
     if problem.variables.is_empty() {
         return None;
@@ -131,7 +134,7 @@ pub fn solve_over<'a>(
     }
     if let Some(ranks) = ranks {
         ranks.end(&outcome.x);
-        program.integration.shared = None;
+        program.integration.leave_ranks(&alone.simulation.limits);
     }
     Some(Solved {
         outcome,

@@ -45,11 +45,12 @@ pub trait Ranks {
         open: Option<&OpenLog<'_>>,
     ) -> Vec<Run>;
 
-    /// The ranks that share the cases of a problem; `None` if it has fewer than two. They begin with the same state and
-    /// the same known evaluations.
-    fn share_cases(
+    /// The ranks that share a problem: its cases, or where it has none and `bodies` says so the elements of its bodies; `None`
+    /// if it has too few. They begin with the same state and the same known evaluations.
+    fn share(
         &self,
         problem: &Problem,
+        bodies: bool,
         state: Option<&SavedState>,
         earlier: &[EvaluationRecord],
     ) -> Option<Arc<Shared>>;

@@ -1,4 +1,5 @@
-//! The cases of one design spread over processes, called ranks.
+//! One optimisation over processes, called ranks: the cases of a design are spread over them, or they compute every motion
+//! together.
 //!
 //! Every rank runs the same optimiser. A case belongs to one rank, which simulates and differentiates it; its numbers then
 //! go to all ranks, and functions over cases follow from them in the order of the file. So every rank has the same bits,
@@ -7,9 +8,11 @@
 
 use crate::event_times::Events;
 use crate::integrate::WorkCounts;
+use crate::math::Team;
 use crate::report::evaluations::{StepsInUse, Work};
 use serde::{Deserialize, Serialize};
 use std::fmt;
+use std::sync::atomic::{AtomicBool, Ordering};
 use std::sync::{Arc, Mutex, MutexGuard, PoisonError};
 use std::time::Instant;
 
@@ -54,6 +57,8 @@ pub(crate) enum Content {
     Gradients(Vec<CaseGradients>),
     /// By case: why its gradients are refused, if they are.
     Refusals(Vec<(usize, Option<String>)>),
+    /// All compute the motion of this design together.
+    Together,
     /// The run has ended.
     End,
 }
@@ -139,9 +144,21 @@ struct Agreed {
     wish: bool,
 }
 
-/// The ranks that share the cases of a run.
+/// Ranks that compute every motion together.
+#[derive(Clone, Debug)]
+pub struct Together {
+    /// The ranks.
+    pub team: Team,
+    /// Whether they must end, as all know it at the same step.
+    pub over: Arc<AtomicBool>,
+    /// Memory that the tape of each may take \[bytes\]: all have to repeat the same steps.
+    pub memory: usize,
+}
+
+/// The ranks that share a run.
 pub struct Shared {
     exchange: Box<dyn Exchange>,
+    together: Option<Together>,
     begun: Instant,
     agreed: Mutex<Agreed>,
 }
@@ -154,10 +171,11 @@ impl fmt::Debug for Shared {
 }
 
 impl Shared {
-    /// The ranks of a way between them.
-    pub fn new(exchange: Box<dyn Exchange>) -> Arc<Self> {
+    /// The ranks of a way between them: they compute motions `together`, or have their own cases.
+    pub fn new(exchange: Box<dyn Exchange>, together: Option<Together>) -> Arc<Self> {
         Arc::new(Self {
             exchange,
+            together,
             begun: Instant::now(),
             agreed: Mutex::default(),
         })
@@ -173,9 +191,26 @@ impl Shared {
         case % self.exchange.ranks() == self.exchange.rank()
     }
 
+    /// How the ranks compute motions together, if they do.
+    pub(crate) fn together(&self) -> Option<&Together> {
+        self.together.as_ref()
+    }
+
     /// Whether all ranks know that the run must end.
     pub(crate) fn is_over(&self) -> bool {
-        self.agreed().over
+        let over = |own: &Together| own.over.load(Ordering::Relaxed);
+        self.agreed().over || self.together.as_ref().is_some_and(over)
+    }
+
+    /// Before a motion that all compute together: whether they do.
+    ///
+    /// # Errors
+    /// The run must end.
+    pub(crate) fn meet(&self, x: &[f64], ends: bool) -> Result<(), Lost> {
+        match self.together {
+            Some(_) => self.all(x, ends, Content::Together).map(drop),
+            None => Ok(()),
+        }
     }
 
     /// Wall time of the run by the clock of rank 0, as all ranks know it \[s\].

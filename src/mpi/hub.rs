@@ -1,16 +1,16 @@
 //! Rank 0: the queue of starts, and who runs which.
 
 use super::crew::Crew;
-use super::letters::{CasesOf, Description, Event, Letter, Reply, Task};
+use super::letters::{Description, Event, Letter, Reply, SharedProblem, Task};
 use super::post::{Pause, Post, Tag};
-use super::tree::Tree;
+use super::tree::shared;
 use crate::cli::interrupt;
 use crate::driver::multi_start::{Run, begin};
 use crate::driver::packed::PackedRun;
 use crate::driver::ranks::{OpenLog, Ranks, StartLog};
 use crate::driver::shared::Shared;
 use crate::optimiser::SavedState;
-use crate::problem::{Division, Problem};
+use crate::problem::{Division, Problem, available_memory};
 use crate::report::evaluations::EvaluationRecord;
 use std::cell::RefCell;
 use std::collections::{BTreeMap, HashMap};
@@ -25,6 +25,9 @@ const AFTER_FAULT: Duration = Duration::from_secs(3);
 const DISMISSAL: Duration = Duration::from_secs(3);
 /// Longest sleep of rank 0 between two looks.
 const LOOK: Duration = Duration::from_micros(500);
+
+/// Memory of a rank for gradients where that of the machine is unknown \[bytes\].
+const UNKNOWN: usize = 1 << 28;
 
 /// A start: the number of its problem, and its place in the order of that problem's starts. Lower ones begin first. Place
 /// 0 is that of a start that was not announced, as from the optimum before.
@@ -295,9 +298,10 @@ impl Ranks for Hub {
         found.into_iter().map(unpack).collect()
     }
 
-    fn share_cases(
+    fn share(
         &self,
         problem: &Problem,
+        bodies: bool,
         state: Option<&SavedState>,
         earlier: &[EvaluationRecord],
     ) -> Option<Arc<Shared>> {
@@ -310,7 +314,17 @@ impl Ranks for Hub {
                 // The phases of a motion follow each other.
                 Division::Events => 0,
             });
-        let ranks = self.post.ranks().min(cases);
+        let together = (bodies && cases < 2 && problem.can_be_shared()).then(|| {
+            let given = problem.simulation.memory;
+            // All ranks may be on one machine.
+            let usual =
+                || available_memory().map_or(UNKNOWN, |bytes| bytes / 2 / self.post.ranks());
+            given.unwrap_or_else(usual)
+        });
+        let ranks = match together {
+            Some(_) => self.post.ranks(),
+            None => self.post.ranks().min(cases),
+        };
         if ranks < 2 {
             return None;
         }
@@ -318,19 +332,17 @@ impl Ranks for Hub {
             if own.asking.remove(&rank).is_none() {
                 self.post.wait::<Letter>(rank, Tag::Letter).ok()?;
             }
-            let of = CasesOf {
+            let of = SharedProblem {
                 description: Description::of(problem, &own.file),
                 start: problem.start(),
                 ranks,
+                together,
                 state: state.cloned(),
                 earlier: earlier.to_vec(),
             };
-            let reply = Reply::Cases(Box::new(of));
+            let reply = Reply::Shared(Box::new(of));
             self.post.send(rank, Tag::Reply, &reply);
         }
-        Some(Shared::new(Box::new(Tree {
-            post: self.post,
-            ranks,
-        })))
+        Some(shared(self.post, ranks, together))
     }
 }

@@ -40,8 +40,8 @@ pub(super) enum Reply {
     Problems(u64, Vec<Description>),
     /// Starts to begin, if any, and whether all that run shall end.
     Tasks(Vec<Task>, bool),
-    /// Cases of one design.
-    Cases(Box<CasesOf>),
+    /// An optimisation that ranks share.
+    Shared(Box<SharedProblem>),
     /// There is no more work.
     End,
 }
@@ -60,13 +60,16 @@ pub(super) struct Task {
     pub earlier: Vec<EvaluationRecord>,
 }
 
-/// A problem whose cases are shared.
+/// A problem that ranks share.
 #[derive(Serialize, Deserialize)]
-pub(super) struct CasesOf {
+pub(super) struct SharedProblem {
     pub description: Description,
     pub start: Vec<f64>,
-    /// Ranks from 0 on that share them.
+    /// Ranks from 0 on that share it.
     pub ranks: usize,
+    /// Whether they compute its motions together, each with so much memory for gradients \[bytes\]; else they have their own
+    /// cases.
+    pub together: Option<usize>,
     pub state: Option<SavedState>,
     pub earlier: Vec<EvaluationRecord>,
 }

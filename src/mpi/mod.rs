@@ -1,7 +1,7 @@
 //! `optimize-mpi`: the command over processes that MPI starts, called ranks.
 //!
 //! Rank 0 reads, writes and reports, as the command does alone. The others ask it for work: starts of an optimisation from
-//! its queue, or cases of one design. No rank but 0 opens a file for writing.
+//! its queue, cases of one design, or shares of one motion. No rank but 0 opens a file for writing.
 
 mod crew;
 mod hub;

@@ -14,8 +14,10 @@ use std::time::{Duration, Instant};
 
 /// How long a rank waits for the others after an interrupt: all get the signal, unless one has died.
 const AFTER_INTERRUPT: Duration = Duration::from_millis(300);
-/// Looks before the first sleep.
+/// Looks before the first sleep, and before that of a rank that waits for a share of a motion: these come thousands of times a
+/// second, and a sleep takes longer than most of them.
 const LOOKS: u32 = 50;
+const LOOKS_FOR_SHARES: u32 = 20_000;
 /// Shortest and longest sleep between two looks for numbers that are due.
 const SHORTEST: Duration = Duration::from_micros(20);
 const LONGEST: Duration = Duration::from_micros(200);
@@ -29,12 +31,14 @@ pub(super) enum Tag {
     Letter = 1,
     /// Rank 0 answers.
     Reply = 2,
-    /// Numbers of cases.
-    Numbers = 3,
+    /// What ranks that share an optimisation tell each other at a design.
+    Messages = 3,
+    /// Shares of a motion.
+    Numbers = 4,
 }
 
 /// The messages of this rank.
-#[derive(Clone, Copy)]
+#[derive(Clone, Copy, Debug)]
 pub(super) struct Post {
     rank: usize,
     ranks: usize,
@@ -43,6 +47,7 @@ pub(super) struct Post {
 /// Sleeps that become longer.
 pub(super) struct Pause {
     looks: u32,
+    before: u32,
     next: Duration,
     longest: Duration,
 }
@@ -52,6 +57,7 @@ impl Pause {
         let (looks, next) = (0, SHORTEST);
         Self {
             looks,
+            before: LOOKS,
             next,
             longest,
         }
@@ -63,7 +69,7 @@ impl Pause {
 
     pub fn sleep(&mut self) {
         self.looks += 1;
-        if self.looks < LOOKS {
+        if self.looks < self.before {
             return std::thread::yield_now();
         }
         std::thread::sleep(self.next);
@@ -134,6 +140,44 @@ impl Post {
                 if since.elapsed() > AFTER_INTERRUPT {
                     return Err(Lost);
                 }
+            }
+            pause.sleep();
+        }
+    }
+
+    /// Sends numbers to a rank that waits for them, or will.
+    pub fn send_numbers(&self, to: usize, numbers: &[f64]) {
+        let world = SimpleCommunicator::world();
+        let to = world.process_at_rank(to as i32);
+        to.send_with_tag(numbers, Tag::Numbers as i32);
+    }
+
+    /// Gives numbers to a rank, and takes those that it gives at the same time.
+    pub fn exchange_numbers(&self, with: usize, numbers: &[f64]) -> Vec<f64> {
+        let world = SimpleCommunicator::world();
+        let to = world.process_at_rank(with as i32);
+        mpi::request::scope(|scope| {
+            let sent = to.immediate_send_with_tag(scope, numbers, Tag::Numbers as i32);
+            let told = self.wait_for_numbers(with);
+            sent.wait();
+            told
+        })
+    }
+
+    /// Waits for numbers from a rank that computes its share of a motion.
+    pub fn wait_for_numbers(&self, from: usize) -> Vec<f64> {
+        let world = SimpleCommunicator::world();
+        let from = world.process_at_rank(from as i32);
+        let mut pause = Pause {
+            before: LOOKS_FOR_SHARES,
+            ..Pause::up_to(LONGEST)
+        };
+        loop {
+            let found = from.immediate_matched_probe_with_tag(Tag::Numbers as i32);
+            if let Some((message, status)) = found {
+                let mut all = vec![0.0; status.count(f64::equivalent_datatype()) as usize];
+                message.matched_receive_into(&mut all[..]);
+                return all;
             }
             pause.sleep();
         }

@@ -1,12 +1,80 @@
 //! An exchange of all ranks with all, along a binomial tree: 2 log₂ of their number messages in a row.
 
 use super::post::{Post, Tag};
-use crate::driver::shared::{Exchange, Lost, Message};
+use crate::cli::progress::progress;
+use crate::driver::shared::{Exchange, Lost, Message, Shared, Together};
+use crate::math::{Gather, Team};
+use std::sync::Arc;
+use std::sync::atomic::{AtomicBool, AtomicU64, Ordering};
 
-/// The first ranks, which share the cases of a problem.
-pub(super) struct Tree {
-    pub post: Post,
-    pub ranks: usize,
+/// The first ranks, which share an optimisation.
+#[derive(Clone, Copy, Debug)]
+struct Tree {
+    post: Post,
+    ranks: usize,
+}
+
+/// Ranks that compute motions together: all give numbers to all.
+#[derive(Debug)]
+struct Numbers {
+    tree: Tree,
+    calls: AtomicU64,
+    /// Whether a rank must end, as all know it after the same call.
+    over: Arc<AtomicBool>,
+}
+
+/// The first `ranks`, which compute motions `together`, each with so much memory for gradients, or have their own cases.
+pub(super) fn shared(post: Post, ranks: usize, together: Option<usize>) -> Arc<Shared> {
+    let tree = Tree { post, ranks };
+    let together = together.map(|memory| {
+        let over = Arc::new(AtomicBool::new(false));
+        let way = Numbers {
+            tree,
+            calls: AtomicU64::new(0),
+            over: over.clone(),
+        };
+        Together {
+            team: Team::of(Arc::new(way)),
+            over,
+            memory,
+        }
+    });
+    Shared::new(Box::new(tree), together)
+}
+
+impl Tree {
+    /// What all ranks have, in their order, from what this one has. `take` receives from a rank, `add` appends what those
+    /// behind it have, and `give` sends to a rank.
+    fn gather<T>(
+        self,
+        own: T,
+        take: impl Fn(usize) -> Result<T, Lost>,
+        add: impl Fn(&mut T, T),
+        give: impl Fn(usize, &T),
+    ) -> Result<T, Lost> {
+        let rank = self.post.rank();
+        // A rank gathers those behind it up to the next that has more trailing zeros, in their order.
+        let mut all = own;
+        let mut distance = 1;
+        while distance < self.ranks && rank & distance == 0 {
+            if rank + distance < self.ranks {
+                add(&mut all, take(rank + distance)?);
+            }
+            distance *= 2;
+        }
+        if rank > 0 {
+            let parent = rank - distance;
+            give(parent, &all);
+            all = take(parent)?;
+        }
+        while distance > 1 {
+            distance /= 2;
+            if rank + distance < self.ranks {
+                give(rank + distance, &all);
+            }
+        }
+        Ok(all)
+    }
 }
 
 impl Exchange for Tree {
@@ -19,28 +87,83 @@ impl Exchange for Tree {
     }
 
     fn all(&self, own: Message) -> Result<Vec<Message>, Lost> {
-        let rank = self.post.rank();
-        // A rank gathers those behind it up to the next that has more trailing zeros, in their order.
-        let mut all = vec![own];
-        let mut distance = 1;
-        while distance < self.ranks && rank & distance == 0 {
-            if rank + distance < self.ranks {
-                let more: Vec<Message> = self.post.wait(rank + distance, Tag::Numbers)?;
-                all.extend(more);
-            }
-            distance *= 2;
+        self.gather(
+            vec![own],
+            |from| self.post.wait(from, Tag::Messages),
+            |all: &mut Vec<Message>, more| all.extend(more),
+            |to, all| self.post.send(to, Tag::Messages, all),
+        )
+    }
+}
+
+/// Numbers before those that are given: which call it is, and whether a rank must end.
+const HEAD: usize = 2;
+
+impl Numbers {
+    /// What all ranks have, a power of two, in their order: each exchanges what it knows with one that knows as much, until
+    /// all know all, log₂ of their number messages in a row (recursive doubling: Thakur, Rabenseifner & Gropp 2005).
+    fn doubled(&self, own: Vec<f64>, exchange: impl Fn(usize, &[f64]) -> Vec<f64>) -> Vec<f64> {
+        let (rank, mut all, mut distance) = (self.rank(), own, 1);
+        while distance < self.ranks() {
+            let told = exchange(rank ^ distance, &all);
+            let (mut first, second) = match rank & distance {
+                0 => (all, told),
+                _ => (told, all),
+            };
+            first[1] = first[1].max(second[1]);
+            first.extend(&second[HEAD..]);
+            (all, distance) = (first, 2 * distance);
         }
-        if rank > 0 {
-            let parent = rank - distance;
-            self.post.send(parent, Tag::Numbers, &all);
-            all = self.post.wait(parent, Tag::Numbers)?;
+        all
+    }
+}
+
+impl Gather for Numbers {
+    fn rank(&self) -> usize {
+        self.tree.post.rank()
+    }
+
+    fn ranks(&self) -> usize {
+        self.tree.ranks
+    }
+
+    fn gather(&self, own: &[f64]) -> Vec<f64> {
+        let post = self.tree.post;
+        let call = self.calls.fetch_add(1, Ordering::Relaxed) as f64;
+        let must_end = f64::from(u8::from(progress().is_over()));
+        let same_place = |from: usize, told: &[f64]| {
+            assert!(
+                told[0] == call,
+                "rank {from} is at another place than rank {}: are their processors or programs different?",
+                post.rank()
+            );
+        };
+        let take = |from: usize| {
+            let told = post.wait_for_numbers(from);
+            same_place(from, &told);
+            Ok(told)
+        };
+        let add = |all: &mut Vec<f64>, more: Vec<f64>| {
+            all[1] = all[1].max(more[1]);
+            all.extend(&more[HEAD..]);
+        };
+        let give = |to: usize, all: &Vec<f64>| post.send_numbers(to, all);
+        let own = [&[call, must_end], own].concat();
+        let mut all = match self.ranks().is_power_of_two() {
+            true => self.doubled(own, |with, all| {
+                let told = post.exchange_numbers(with, all);
+                same_place(with, &told);
+                told
+            }),
+            false => match self.tree.gather(own, take, add, give) {
+                Ok(all) => all,
+                Err(Lost) => unreachable!("numbers are waited for until they come"),
+            },
+        };
+        if all[1] > 0.0 {
+            self.over.store(true, Ordering::Relaxed);
         }
-        while distance > 1 {
-            distance /= 2;
-            if rank + distance < self.ranks {
-                self.post.send(rank + distance, Tag::Numbers, &all);
-            }
-        }
-        Ok(all)
+        all.drain(..HEAD);
+        all
     }
 }

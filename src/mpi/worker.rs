@@ -1,13 +1,12 @@
 //! A rank that works for rank 0.
 
 use super::crew::Crew;
-use super::letters::{CasesOf, Description, Letter, Reply, Unread};
+use super::letters::{Description, Letter, Reply, SharedProblem, Unread};
 use super::post::{Pause, Post, Tag};
-use super::tree::Tree;
+use super::tree::shared;
 use crate::cli::{interrupt, progress::progress};
 use crate::driver::KnownEvaluations;
 use crate::driver::optimise::solve_over;
-use crate::driver::shared::Shared;
 use crate::problem::Problem;
 use mpi::topology::{Communicator, SimpleCommunicator};
 use std::ops::ControlFlow;
@@ -56,7 +55,7 @@ pub(super) fn work(post: &Post) {
                     crew.begin(problems[task.of].problem(post), task);
                 }
             }
-            Reply::Cases(of) => share_cases(post, *of),
+            Reply::Shared(of) => share(post, *of),
             Reply::End => return,
         }
     }
@@ -104,15 +103,12 @@ fn read(description: &Description, post: &Post) -> Problem {
     SimpleCommunicator::world().abort(BAD_INPUT);
 }
 
-/// Optimises as rank 0 does, with the cases of this rank.
-fn share_cases(post: &Post, of: CasesOf) {
+/// Optimises as rank 0 does, with the cases of this rank or its shares of all motions.
+fn share(post: &Post, of: SharedProblem) {
     interrupt::heed();
     let mut problem = read(&of.description, post);
     problem.restart(&of.start);
-    let ranks = Shared::new(Box::new(Tree {
-        post: *post,
-        ranks: of.ranks,
-    }));
+    let ranks = shared(*post, of.ranks, of.together);
     let log = KnownEvaluations::new(of.earlier, |_| {});
     let mut go_on = |_: &_| ControlFlow::Continue(());
     // Rank 0 has the same result.

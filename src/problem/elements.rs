@@ -6,7 +6,7 @@ use super::reduced;
 use super::spread_loads::unit_forces;
 use super::statics::mesh::{Part, part};
 use super::statics::properties::{slots, thickness};
-use crate::math::{Scalar, Vec3};
+use crate::math::{Scalar, Team, Vec3};
 use crate::model::finite::FiniteElements;
 use crate::prepared::Prepared;
 use crate::quantity::Quantity;
@@ -224,6 +224,7 @@ fn shells<S: Scalar>(
             [of(own.mass), of(own.stiffness)]
         }),
         mesh: prepared.mesh.clone(),
+        team: Team::default(),
     }
 }
 

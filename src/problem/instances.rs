@@ -1,6 +1,6 @@
 //! The map from a design to its scene, compiled once for each scalar.
 
-use super::{Problem, StaticScene, Statics, phases, scene};
+use super::{Problem, StaticScene, Statics, phases, scene, together};
 use crate::functions::{Function, Scene};
 use crate::math::{Complex64, Dual, Scalar};
 
@@ -40,6 +40,7 @@ scene_scalar!(Dual);
 fn unlowered_scene<S: Scalar>(problem: &Problem, x: &[S]) -> Scene<S> {
     let (x, state) = problem.split(x);
     let mut scene = scene::scene(&problem.written, &problem.order, &problem.extended(x));
+    together::give(&problem.team, &mut scene.model);
     phases::begin(&problem.written, &mut scene, state);
     for (joint, left_out) in scene.model.joints.iter_mut().zip(&problem.left_out) {
         let (rows, fit) = left_out;

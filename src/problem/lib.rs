@@ -11,6 +11,7 @@ mod bushings;
 mod cams;
 mod case_faults;
 mod cases;
+mod centres;
 mod check;
 mod combined;
 mod composed;
@@ -79,6 +80,7 @@ pub mod structure;
 mod surfaces;
 mod syntax;
 mod text;
+mod together;
 mod turns;
 mod variables;
 mod windows;
@@ -109,7 +111,7 @@ pub use variables::Variable;
 use crate::functions::Scene;
 use crate::integrate::Spacing;
 use crate::lower::Lowering;
-use crate::math::{Scalar, Vec3};
+use crate::math::{Scalar, Team, Vec3};
 use crate::model::{ConstraintRow, Fit};
 use crate::optimiser::Method;
 use crate::structures::loads::Load;
@@ -250,6 +252,8 @@ pub struct Problem {
     pub statics: Option<Arc<Statics>>,
     /// Cases; then what is computed is computed in each, and this problem has no scene of its own.
     pub cases: Option<Arc<Cases>>,
+    /// The ranks that compute its motions together.
+    team: Team,
 }
 
 impl Problem {

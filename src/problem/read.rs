@@ -1,6 +1,7 @@
 //! Reads the text of a problem file: a problem, or all of its faults.
 
 use super::aggregates;
+use super::centres;
 use super::check::check;
 use super::composing::{Composing, strip};
 use super::derived::{Derived, Expressions};
@@ -34,7 +35,7 @@ use super::variables::{bind, variables};
 use super::{Constraint, Objective, OptimiserSettings, Problem, Sense, Simulation};
 use crate::integrate::{self, Spacing, Start};
 use crate::lower::{self, Lowering};
-use crate::math::Dual;
+use crate::math::{Dual, Team};
 use crate::model::Model;
 use crate::optimiser::Method;
 use crate::schema::functions::WhichFunction;
@@ -402,6 +403,7 @@ fn deserialise(document: &Value) -> Result<Document, Finding> {
         Finding::new(pointer, found, "what the schema says")
     })?;
     holds::find_welds(&mut written);
+    centres::fill(&mut written)?;
     Ok(written)
 }
 
@@ -495,6 +497,7 @@ fn problem(
         focus: None,
         statics: None,
         cases: None,
+        team: Team::default(),
     }
 }
 
@@ -552,6 +555,7 @@ fn simulation(written: Option<&schema::Simulation>, usual: f64) -> Simulation {
             steps: None,
             seconds: written.and_then(|written| written.seconds),
             progress: None,
+            agreed: None,
         },
     }
 }

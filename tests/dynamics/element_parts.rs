@@ -3,7 +3,7 @@
 
 use crate::reference;
 
-use flexbody_mathematics::math::{Mat3, Vec3};
+use flexbody_mathematics::math::{Mat3, Team, Vec3};
 use flexbody_mechanics::integrate::{Method, Settings, Trajectory, simulate};
 use flexbody_mechanics::model::finite::FiniteElements;
 use flexbody_mechanics::model::{Form, Model};
@@ -65,6 +65,7 @@ fn cantilever(
         parts,
         damping: None,
         mesh: Arc::new(mesh),
+        team: Team::default(),
     };
     (finite, surface, nodes, mass)
 }

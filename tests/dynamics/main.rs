@@ -73,6 +73,7 @@ mod singular_positions;
 mod steps_in_use;
 mod stops;
 mod stribeck;
+mod teams;
 mod turned_factors;
 mod windows;
 mod work_of_gradients;

@@ -2,6 +2,7 @@
 
 use crate::program::{
     TREBUCHET, alone, end_of, ended, files, mpirun, no_orphans, optimum, over, processes, start,
+    two_plates,
 };
 use flexbody::mpi::Session;
 use std::path::Path;
@@ -158,6 +159,78 @@ fn a_signal_to_one_rank_ends_all() {
         assert_eq!(code, Some(130));
         no_orphans(signalled);
         assert!(at.path().join(signalled).join("optimum.json").exists());
+    }
+}
+
+/// The same where all ranks compute every motion together: none waits for another that has ended.
+#[test]
+fn a_signal_to_one_rank_ends_motions_of_all() {
+    let at = tempfile::tempdir().expect("a directory");
+    let problem = two_plates(at.path(), [8, 2], 1000);
+    for (k, signalled) in ["first", "last"].into_iter().enumerate() {
+        let arguments = [
+            &problem,
+            "--share-bodies",
+            "--no-certificate",
+            "--output",
+            signalled,
+        ];
+        let mut run = start(2, at.path(), &arguments);
+        let mut ranks = ranks_of(signalled, 2);
+        ranks.sort_unstable();
+        wait_for(signalled, &at.path().join(signalled), 3);
+        send("-INT", ranks[k]);
+        let (code, time) = end_of(&mut run);
+        assert!(time < SOON, "{time:?}");
+        assert_eq!(code, Some(130));
+        no_orphans(signalled);
+        assert!(at.path().join(signalled).join("optimum.json").exists());
+    }
+}
+
+/// A rank that dies amid a motion that all compute ends all, and the run goes on in one process.
+#[test]
+fn a_killed_rank_ends_motions_of_all() {
+    let at = tempfile::tempdir().expect("a directory");
+    let problem = two_plates(at.path(), [8, 2], 4);
+    let whole = alone(
+        at.path(),
+        &[&problem, "--no-certificate", "--output", "whole"],
+    );
+    for k in 0..2 {
+        let output = format!("killed_{k}");
+        let mut run = start(
+            2,
+            at.path(),
+            &[
+                &problem,
+                "--share-bodies",
+                "--no-certificate",
+                "--output",
+                &output,
+            ],
+        );
+        let ranks = ranks_of(&output, 2);
+        wait_for(&output, &at.path().join(&output), 2 + k);
+        send("-9", ranks[k]);
+        let (code, time) = end_of(&mut run);
+        assert!(time < SOON, "{time:?}");
+        assert!(code.is_none_or(|code| code != 0), "{code:?}");
+        no_orphans(&output);
+        let ran = over(
+            3,
+            at.path(),
+            &[
+                &problem,
+                "--share-bodies",
+                "--no-certificate",
+                "--resume",
+                &output,
+            ],
+        );
+        assert_eq!(ran.code, whole.code, "{}", ran.err);
+        let of = |name: &str| optimum(&at.path().join(name));
+        assert_eq!(of(&output), of("whole"));
     }
 }
 

@@ -11,6 +11,10 @@ use std::time::{Duration, Instant};
 
 pub const TREBUCHET: &str = concat!(env!("CARGO_MANIFEST_DIR"), "/problems/trebuchet.json");
 const CRANE: &str = concat!(env!("CARGO_MANIFEST_DIR"), "/problems/crane.json");
+const PLATES: &str = concat!(
+    env!("CARGO_MANIFEST_DIR"),
+    "/problems/flexible/double_plate_mass.json"
+);
 const RELEASE_ANGLE: &str = concat!(
     env!("CARGO_MANIFEST_DIR"),
     "/problems/trebuchet_release_angle.json"
@@ -143,6 +147,19 @@ pub fn crane_of_twelve(at: &Path) -> String {
     let cases: serde_json::Map<String, Value> = (0..12).map(case).collect();
     document["cases"] = cases.into();
     written(at, "crane.json", &document)
+}
+
+/// Two plates of so many elements each, whose mass is optimised for a while in coarse steps.
+pub fn two_plates(at: &Path, elements: [usize; 2], iterations: usize) -> String {
+    let mut document = read(Path::new(PLATES));
+    for body in ["first", "second"] {
+        document["bodies"][body]["elements"]["structure"]["mesh"]["plate"]["elements"] =
+            json!(elements);
+    }
+    document["simulation"]["duration"] = json!(0.05);
+    document["simulation"]["steps"] = json!(12);
+    document["optimiser"] = json!({"iterations": iterations});
+    written(at, "plates.json", &document)
 }
 
 /// A rigid trebuchet that ends at an event, with five gravities, in steps that are chosen by a tolerance.

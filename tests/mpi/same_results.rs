@@ -1,7 +1,7 @@
 //! Results do not depend on the number of ranks.
 
 use crate::program::{
-    TREBUCHET, alone, crane_of_twelve, optimum, over, same_files, trebuchet_of_five,
+    TREBUCHET, alone, crane_of_twelve, optimum, over, same_files, trebuchet_of_five, two_plates,
 };
 use std::path::Path;
 
@@ -65,6 +65,16 @@ fn cases_in_motion() {
     let at = tempfile::tempdir().expect("a directory");
     let problem = trebuchet_of_five(at.path());
     over_one_to_four(at.path(), &[&problem, "--second-order"]);
+}
+
+/// All ranks compute every motion together: their elements and the factors of their matrices are divided.
+#[test]
+fn bodies_of_one_motion() {
+    let at = tempfile::tempdir().expect("a directory");
+    let problem = two_plates(at.path(), [16, 2], 1);
+    over_one_to_four(at.path(), &[&problem, "--share-bodies"]);
+    let record = optimum(&at.path().join("over_2"));
+    assert_eq!(record["gradient_certificate"]["passed"], true);
 }
 
 /// Nothing of it can be spread.

@@ -3,7 +3,7 @@
 
 use super::flexible::add_loads;
 use super::models::{Numbers, axes_along, joint};
-use flexbody_mathematics::math::{Mat3, Vec3};
+use flexbody_mathematics::math::{Mat3, Team, Vec3};
 use flexbody_mechanics::integrate::Trajectory;
 use flexbody_mechanics::model::finite::FiniteElements;
 use flexbody_mechanics::model::{
@@ -52,6 +52,7 @@ pub fn aluminium_plate(elements: [usize; 2], thickness: f64) -> FiniteElements<f
         parts: Vec::new(),
         damping: None,
         mesh: Arc::new(mesh),
+        team: Team::default(),
     }
 }
 
@@ -200,6 +201,7 @@ fn panel_of(
         parts,
         damping: more.then_some([0.3, 0.02]),
         mesh: Arc::new(mesh),
+        team: Team::default(),
     };
     Shells {
         structure,

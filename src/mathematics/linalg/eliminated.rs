@@ -36,6 +36,17 @@ impl<S: SolveScalar> Eliminated<S> {
     }
 }
 
+impl<S> Eliminated<S> {
+    /// Of a front that another rank eliminates.
+    pub(super) fn elsewhere() -> Self {
+        Self {
+            exchanges: Vec::new(),
+            left: Vec::new(),
+            upper: Vec::new(),
+        }
+    }
+}
+
 /// Whether a pivot is neither zero nor infinite nor NaN.
 pub(super) fn usable<S: SolveScalar>(pivot: S) -> bool {
     let size = size(pivot);

@@ -2,7 +2,7 @@
 //! of the matrix go (Duff & Reid 1983).
 
 use super::border::Border;
-use super::branches::{Branch, divide, postorder};
+use super::branches::{Branch, divide, postorder, work};
 use super::front::{Child, Front, Run, Short};
 use super::pattern::{KnownPivots, Pattern};
 use super::short_rows::ShortRows;
@@ -168,6 +168,11 @@ impl Plan {
     /// The first unknown whose pivot is searched.
     pub(super) fn first_of_border(&self) -> usize {
         self.fronts.last().map_or(0, |front| front.pivots.start)
+    }
+
+    /// Operations of the elimination of a branch.
+    pub(super) fn work_of(&self, branch: &Branch) -> usize {
+        self.fronts[branch.fronts.clone()].iter().map(work).sum()
     }
 
     /// Whether a front is the last of a branch.

@@ -11,6 +11,7 @@ mod fronts;
 pub mod gmres;
 mod matrix;
 mod multifrontal;
+mod owners;
 pub mod pattern;
 mod plans;
 mod replay;
@@ -18,6 +19,7 @@ mod scaling;
 mod short_rows;
 mod sparse_lu;
 mod substitution;
+mod workspace;
 
 pub use elimination::{Factors, Pivots, SingularMatrix, SolveScalar};
 pub use factors::{LAST, REFINED_SOLVES, SparseLu, is_last};

@@ -10,9 +10,11 @@ use super::eliminated::{Eliminated, add_runs, usable};
 use super::elimination::{SingularMatrix, SolveScalar};
 use super::fronts::Plan;
 use super::matrix::SparseMatrix;
+use super::owners::Owners;
 use super::pattern::{KnownPivots, Pattern};
 use super::plans::plan;
 use super::scaling::{Equilibration, size};
+use super::workspace::Workspace;
 use rayon::prelude::*;
 use std::ops::Range;
 use std::sync::Arc;
@@ -20,6 +22,8 @@ use std::sync::Arc;
 /// The elimination of matrices of one pattern.
 pub(super) struct Multifrontal<S> {
     pub(super) plan: Arc<Plan>,
+    /// Who eliminates which branch.
+    pub(super) owners: Owners,
     pub(super) scaling: Equilibration,
     /// The entries of the scaled matrix.
     pub(super) scaled: Vec<S>,
@@ -35,17 +39,6 @@ pub(super) struct Multifrontal<S> {
     pub(super) of_trunk: Workspace<S>,
     /// The factors of a sparse border.
     pub(super) border: Option<EliminatedBorder<S>>,
-}
-
-/// Workspace of a branch or of the trunk.
-pub(super) struct Workspace<S> {
-    /// Memory of remainders that are used up.
-    free: Vec<Vec<S>>,
-    /// Right-hand sides of the unknowns and of the short rows.
-    pub(super) x: Vec<Vec<S>>,
-    pub(super) short: Vec<Vec<S>>,
-    /// Part of a right-hand side that a front touches.
-    pub(super) beside: Vec<S>,
 }
 
 /// What the eliminations of all fronts read.
@@ -135,22 +128,24 @@ impl<S: SolveScalar> Multifrontal<S> {
     pub(super) fn by(plan: Arc<Plan>, pattern: &Pattern) -> Self {
         let widths = plan.fronts.iter().map(|front| front.rest.len());
         let widest = widths.max().unwrap_or(0);
-        let space = || Workspace {
-            free: Vec::new(),
-            x: Vec::new(),
-            short: Vec::new(),
-            beside: vec![S::zero(); widest],
-        };
+        let owners = Owners::new(pattern.team(), &plan);
+        let done = plan.fronts.iter().enumerate();
+        let done = done.map(|(k, front)| match owners.has_front(&plan, k) {
+            true => Eliminated::new(front),
+            false => Eliminated::elsewhere(),
+        });
+        let space = || Workspace::new(widest);
         Self {
             scaling: Equilibration::new(pattern),
             scaled: vec![S::zero(); pattern.entries()],
             inverse: vec![S::zero(); plan.short.len()],
             beside: vec![S::zero(); plan.short.beside.len()],
-            done: plan.fronts.iter().map(Eliminated::new).collect(),
+            done: done.collect(),
             remainders: plan.fronts.iter().map(|_| Vec::new()).collect(),
             of_branches: plan.branches.iter().map(|_| space()).collect(),
             of_trunk: space(),
             border: plan.border.as_ref().map(EliminatedBorder::new),
+            owners,
             plan,
         }
     }
@@ -180,15 +175,18 @@ impl<S: SolveScalar> Multifrontal<S> {
             let remainders = parts(&mut self.remainders, ranges());
             let pieces =
                 (plan.branches.par_iter().zip(done).zip(remainders)).zip(&mut self.of_branches);
-            let eliminated = pieces.map(|(((branch, done), remainders), space)| {
+            let owners = &self.owners;
+            let own = pieces.enumerate().filter(|(b, _)| owners.owns(*b));
+            let eliminated = own.map(|(b, (((branch, done), remainders), space))| {
                 let first = branch.fronts.start;
-                (branch.fronts.clone()).try_for_each(|k| {
+                let end = (branch.fronts.clone()).try_for_each(|k| {
                     let own = (&mut *done, &mut *remainders);
                     shared.eliminate((k, first), own, &mut space.free)
-                })
+                });
+                (b, end)
             });
-            let all: Vec<Result<(), SingularMatrix>> = eliminated.collect();
-            all.into_iter().collect::<Result<(), SingularMatrix>>()?;
+            let eliminated = eliminated.collect();
+            owners.exchange_remainders(&plan.branches, eliminated, &mut self.remainders)?;
         }
         let free = &mut self.of_trunk.free;
         for &k in &plan.trunk {

@@ -4,7 +4,7 @@
 //! The first pass records the place of each entry. Later passes replay the record, so an entry
 //! costs one indexed addition. Entries at the same place are summed.
 
-use crate::math::{Mat3, Scalar, Vec3};
+use crate::math::{Mat3, Scalar, Team, Vec3};
 use std::sync::Arc;
 
 /// Receives the entries of an assembly in their fixed order.
@@ -64,6 +64,8 @@ pub struct Pattern {
     pub(super) record: Record,
     /// Pivots that are known before the values.
     known_pivots: Option<Arc<KnownPivots>>,
+    /// The ranks that factorise matrices of this pattern together.
+    team: Team,
 }
 
 /// Pivots (row, column) that are known before the values, in the order of their elimination: those
@@ -235,6 +237,7 @@ impl Pattern {
             rows,
             record: Record::Whole(Vec::new()),
             known_pivots: None,
+            team: Team::default(),
         }
     }
 
@@ -252,6 +255,17 @@ impl Pattern {
     pub fn with_pivots(mut self, pivots: KnownPivots) -> Self {
         self.known_pivots = (!pivots.inner.is_empty()).then(|| Arc::new(pivots));
         self
+    }
+
+    /// The pattern of matrices that some ranks factorise together.
+    pub fn with_team(mut self, team: Team) -> Self {
+        self.team = team;
+        self
+    }
+
+    /// The ranks that factorise matrices of this pattern together.
+    pub fn team(&self) -> &Team {
+        &self.team
     }
 
     /// Pivots that are known before the values.

@@ -3,7 +3,8 @@
 use super::branches::Branch;
 use super::elimination::SolveScalar;
 use super::front::System;
-use super::multifrontal::{Multifrontal, Workspace};
+use super::multifrontal::Multifrontal;
+use super::workspace::Workspace;
 use rayon::prelude::*;
 
 impl<S: SolveScalar> Multifrontal<S> {
@@ -52,6 +53,7 @@ impl<S: SolveScalar> Multifrontal<S> {
 
     fn forward(&mut self, system: System) {
         let (plan, done, scaled) = (&self.plan, &self.done, &self.scaled);
+        let owners = &self.owners;
         let trunk = &mut self.of_trunk;
         let start = |branch: &Branch, space: &mut Workspace<S>, trunk: &Workspace<S>| {
             space.resize(trunk.x.len(), (branch.order(), 0));
@@ -72,8 +74,11 @@ impl<S: SolveScalar> Multifrontal<S> {
         if !plan.branches.is_empty() {
             let trunk = &*trunk;
             let all = plan.branches.par_iter().zip(&mut self.of_branches);
-            all.with_max_len(1)
-                .for_each(|(branch, space)| start(branch, space, trunk));
+            let all = all.with_max_len(1).enumerate();
+            all.filter(|(b, _)| owners.owns(*b))
+                .for_each(|(_, (branch, space))| start(branch, space, trunk));
+            let outside = |branch: &Branch| branch.own.len()..branch.order();
+            owners.exchange_parts(&plan.branches, &mut self.of_branches, outside);
         }
         for (branch, space) in plan.branches.iter().zip(&self.of_branches) {
             for (x, own) in trunk.x.iter_mut().zip(&space.x) {
@@ -90,7 +95,7 @@ impl<S: SolveScalar> Multifrontal<S> {
     }
 
     fn backward(&mut self, system: System) {
-        let (plan, done) = (&self.plan, &self.done);
+        let (plan, done, owners) = (&self.plan, &self.done, &self.owners);
         let trunk = &mut self.of_trunk;
         if let Some(border) = &mut self.border {
             let first = plan.first_of_border();
@@ -118,8 +123,11 @@ impl<S: SolveScalar> Multifrontal<S> {
         if !plan.branches.is_empty() {
             let trunk = &*trunk;
             let all = plan.branches.par_iter().zip(&mut self.of_branches);
-            all.with_max_len(1)
-                .for_each(|(branch, space)| finish(branch, space, trunk));
+            let all = all.with_max_len(1).enumerate();
+            all.filter(|(b, _)| owners.owns(*b))
+                .for_each(|(_, (branch, space))| finish(branch, space, trunk));
+            let own = |branch: &Branch| 0..branch.own.len();
+            owners.exchange_parts(&plan.branches, &mut self.of_branches, own);
         }
         for (branch, space) in plan.branches.iter().zip(&self.of_branches) {
             for (all, own) in trunk.x.iter_mut().zip(&space.x) {
@@ -144,14 +152,6 @@ impl<S: SolveScalar> Multifrontal<S> {
             plan.short.subtract_sums(by, b, t);
         }
         plan.short.substitute_back(system, &self.beside, t, b);
-    }
-}
-
-impl<S: SolveScalar> Workspace<S> {
-    /// Makes room for right-hand sides of these lengths.
-    fn resize(&mut self, count: usize, (unknowns, short): (usize, usize)) {
-        self.x.resize_with(count, || vec![S::zero(); unknowns]);
-        self.short.resize_with(count, || vec![S::zero(); short]);
     }
 }
 

@@ -1,5 +1,6 @@
 //! The scalar of all formulas: real, complex (complex step) or dual (forward mode).
 
+use super::packed::Packed;
 use nalgebra::{Matrix3, Vector3};
 use num_traits::{One, Zero};
 use std::fmt::Debug;
@@ -24,6 +25,7 @@ pub const COMPLEX_STEP: f64 = 1e-30;
 pub trait Scalar:
     Copy
     + Debug
+    + Packed
     + PartialEq
     + Send
     + Sync
@@ -333,6 +335,28 @@ pub fn along<S: Scalar>(a: &Vec3<S>, b: &Vec3<f64>) -> S {
 pub fn skew<S: Scalar>(a: &Vec3<S>) -> Mat3<S> {
     let z = S::zero();
     Mat3::new(z, -a.z, a.y, a.z, z, -a.x, -a.y, a.x, z)
+}
+
+impl Packed for Complex64 {
+    fn pack(&self, out: &mut Vec<f64>) {
+        [self.re, self.im].pack(out);
+    }
+
+    fn unpack(from: &mut &[f64]) -> Self {
+        let [re, im] = Packed::unpack(from);
+        Self::new(re, im)
+    }
+}
+
+impl Packed for Dual {
+    fn pack(&self, out: &mut Vec<f64>) {
+        [self.re, self.du].pack(out);
+    }
+
+    fn unpack(from: &mut &[f64]) -> Self {
+        let [re, du] = Packed::unpack(from);
+        Self { re, du }
+    }
 }
 
 #[cfg(test)]

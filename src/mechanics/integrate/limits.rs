@@ -14,12 +14,15 @@ pub struct Limits {
     pub seconds: Option<f64>,
     /// Observer of the progress.
     pub progress: Option<Arc<Progress>>,
+    /// Where several processes compute a motion together: whether they must end, as all know it at the same step. The
+    /// clock of one then ends nothing.
+    pub agreed: Option<Arc<AtomicBool>>,
 }
 
 impl Limits {
     /// Whether simulations must end now.
     pub fn is_over(&self) -> bool {
-        (self.progress.as_ref()).is_some_and(|progress| progress.is_over())
+        is_over(self.agreed.as_ref(), self.progress.as_ref())
     }
 
     /// If simulations must end, allows them so much time more, for the results.
@@ -29,6 +32,13 @@ impl Limits {
         {
             progress.end_by(Instant::now() + time);
         }
+    }
+}
+
+fn is_over(agreed: Option<&Arc<AtomicBool>>, progress: Option<&Arc<Progress>>) -> bool {
+    match agreed {
+        Some(agreed) => agreed.load(Relaxed),
+        None => progress.is_some_and(|progress| progress.is_over()),
     }
 }
 
@@ -122,12 +132,13 @@ pub(super) struct Clock {
     since: Instant,
     seconds: Option<f64>,
     told: Option<(Arc<Progress>, Arc<Run>)>,
+    agreed: Option<Arc<AtomicBool>>,
 }
 
 impl Clock {
     /// A clock that starts now, for a motion of `duration` [s]; `None` if it is not needed.
     pub fn start(limits: &Limits, duration: f64) -> Option<Self> {
-        if limits.seconds.is_none() && limits.progress.is_none() {
+        if limits.seconds.is_none() && limits.progress.is_none() && limits.agreed.is_none() {
             return None;
         }
         let since = Instant::now();
@@ -148,14 +159,14 @@ impl Clock {
             since,
             seconds: limits.seconds,
             told,
+            agreed: limits.agreed.clone(),
         })
     }
 
     /// Whether the march must end now.
     pub fn is_over(&self) -> bool {
-        self.told
-            .as_ref()
-            .is_some_and(|(progress, _)| progress.is_over())
+        let progress = self.told.as_ref().map(|(progress, _)| progress);
+        is_over(self.agreed.as_ref(), progress)
     }
 
     /// Reports the progress of the march; returns the limit [s] if it is exceeded.
@@ -191,9 +202,8 @@ mod tests {
     #[test]
     fn a_deadline_ends_simulations() {
         let limits = Limits {
-            steps: None,
-            seconds: None,
             progress: Some(Arc::default()),
+            ..Limits::default()
         };
         let clock = Clock::start(&limits, 1.0).expect("a clock");
         assert!(!limits.is_over() && !clock.is_over());
@@ -211,9 +221,8 @@ mod tests {
     #[test]
     fn the_longest_simulation_is_told() {
         let limits = Limits {
-            steps: None,
-            seconds: None,
             progress: Some(Arc::default()),
+            ..Limits::default()
         };
         let progress = limits.progress.clone().expect("it was given");
         assert_eq!(progress.longest(), None);

@@ -19,7 +19,7 @@ pub use super::element_operators::UNKNOWNS;
 use super::element_operators::{Columns, Symmetric};
 use super::shapes::{ModalInertia, ModalStiffness};
 use super::shell_kind::{SHELL_NODES, ShellKind, ShellNodes};
-use crate::math::{Mat3, Vec3, parameters};
+use crate::math::{Mat3, Team, Vec3, parameters};
 use std::sync::{Arc, OnceLock};
 
 /// Nodes of an element, at most.
@@ -66,9 +66,11 @@ pub struct FiniteElements<S> {
     pub parts: Vec<Part<S>>,
     /// α \[1/s\] and β \[s\]; none if nothing is damped.
     pub damping: Option<[S; 2]>,
+    /// The ranks that divide the elements among them.
+    pub team: Team,
 }
 
-parameters!(struct FiniteElements { mesh; thickness, young, density, surface_mass, parts, damping });
+parameters!(struct FiniteElements { mesh, team; thickness, young, density, surface_mass, parts, damping });
 
 /// A beam or a lumped mass among the elements of a body.
 #[derive(Clone, Debug)]

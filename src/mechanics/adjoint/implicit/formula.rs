@@ -142,10 +142,11 @@ impl<'a> BackwardStage<'a> {
             change: vec![0.0; length],
         });
         (self.adjoints).resize_with(sweeps.len(), || vec![0.0; length]);
+        let team = flexible::team(model);
         let mut moving = Moving {
             model,
             numbering,
-            side_by_side: other.is_some() && sweeps.len() > 1,
+            side_by_side: other.is_some() && sweeps.len() > 1 && team.is_alone(),
             matrix,
             kept: &mut self.kept,
             functions: &mut self.functions,
@@ -154,7 +155,7 @@ impl<'a> BackwardStage<'a> {
         match (other, before) {
             (Some(other), Some((of_other, before))) => {
                 let moved = || moving.step((formula, step), sweeps, counts);
-                rayon::join(moved, || other.make(of_other, before)).0
+                team.join(moved, || other.make(of_other, before)).0
             }
             _ => moving.step((formula, step), sweeps, counts),
         }

@@ -59,6 +59,7 @@ pub(super) fn gradients(
     let mut one = None;
     let mut coupled = None;
     let shells = flexible::has_shells(model);
+    let side_by_side = shells && flexible::team(model).is_alone();
     let mut counts = WorkCounts::default();
     let mut replay = Replay::new(tape, run.grid.steps(), || {
         Replayer::new(model, run, &scheme)
@@ -79,7 +80,7 @@ pub(super) fn gradients(
             let own = (&scheme, &step.from, step.stages());
             let size = (step.size, step.growth);
             let add = |sweep: &mut Sweep| sweep.sample(scene, run, sample, own, size);
-            match shells {
+            match side_by_side {
                 true => sweeps.par_iter_mut().for_each(add),
                 false => sweeps.iter_mut().for_each(add),
             }

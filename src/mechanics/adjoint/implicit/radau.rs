@@ -10,7 +10,7 @@ use crate::integrate::implicit::split::SplitMatrix;
 use crate::linalg::{Emit, KnownPivots, Pattern, SparseLu, SparseMatrix};
 use crate::math::slices::add_scaled;
 use crate::model::Model;
-use crate::system::{Numbering, bodies};
+use crate::system::{Numbering, bodies, flexible};
 
 /// The coupled matrix of the present step, and workspace that all functions share.
 pub(super) struct BackwardStage<'a> {
@@ -96,7 +96,9 @@ impl<'a> BackwardStage<'a> {
             short: of_stages(&one.short),
             inner: of_stages(&one.inner),
         });
-        let pattern = Pattern::record(order, |emit| blocks.emit(scheme, emit)).with_pivots(known);
+        let pattern = Pattern::record(order, |emit| blocks.emit(scheme, emit))
+            .with_pivots(known)
+            .with_team(flexible::team(model));
         Self {
             model,
             numbering,

@@ -259,6 +259,7 @@ pub fn emit_jacobian<S: Scalar>(
     let (mut moments, mut moments_rate) = (Mat3::zeros(), Mat3::zeros());
     let elements = &finite.mesh.elements;
     let work = |i: usize| OfElement::of(finite, i, at);
+    // It takes longer to send matrices than to make them: every rank makes all.
     each(elements.len(), work, |i, own| {
         let (element, weights) = (&elements[i], per_area(finite, i));
         let OfElement {

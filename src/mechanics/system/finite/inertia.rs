@@ -5,14 +5,14 @@
 //! parts of F_k. Terms of the mass alone and of the undeformed inertia are those of a rigid body; they are
 //! in [`crate::system::bodies`] and left out here, as in [`crate::system::flexing`].
 
-use super::each::each;
+use super::each::each_over;
 use super::element::{
     Points, gather, motion, motion_transpose, per_area, points, pull_per_area, scatter, second,
     share, weigh,
 };
 use super::parts;
 use crate::math::scalar::skew;
-use crate::math::{Mat3, Scalar, Vec3};
+use crate::math::{Mat3, Packed, Scalar, Vec3};
 use crate::model::finite::{FiniteElements, NODES, POINTS, ShellElement};
 use crate::system::flexing::{Flexing, FlexingCotangent, Generalised, Moving, axial};
 
@@ -79,11 +79,16 @@ pub fn inertial<S: Scalar>(finite: &FiniteElements<S>, at: &Flexing<S>) -> Gener
         angular -= axial(&(by_rotation.0 * second(element, weights)));
         (linear, angular, motion_transpose(element, &forces))
     };
-    each(elements.len(), work, |i, (linear, angular, forces)| {
-        out.linear += linear;
-        out.angular += angular;
-        scatter(&elements[i], &forces, &mut out.elastic);
-    });
+    each_over(
+        &finite.team,
+        elements.len(),
+        work,
+        |i, (linear, angular, forces)| {
+            out.linear += linear;
+            out.angular += angular;
+            scatter(&elements[i], &forces, &mut out.elastic);
+        },
+    );
     out.linear = at.rotation * out.linear;
     parts::add_inertial(finite, at, &mut out);
     out
@@ -96,6 +101,26 @@ struct OfElement {
     force: Vec3<f64>,
     omega: Vec3<f64>,
     weight: [f64; 2],
+}
+
+impl Packed for OfElement {
+    fn pack(&self, out: &mut Vec<f64>) {
+        self.b.pack(out);
+        [self.gamma, self.force, self.omega].pack(out);
+        self.weight.pack(out);
+    }
+
+    fn unpack(from: &mut &[f64]) -> Self {
+        let b = Packed::unpack(from);
+        let [gamma, force, omega] = Packed::unpack(from);
+        Self {
+            b,
+            gamma,
+            force,
+            omega,
+            weight: Packed::unpack(from),
+        }
+    }
 }
 
 /// Pulls the cotangent ψ of [`inertial`] back to the motion, the accelerations held, and to the
@@ -161,15 +186,20 @@ pub fn pull_back(
         let state = [&by_place, &by_rate].map(|by| motion_transpose(element, by));
         (by, state)
     };
-    each(elements.len(), work, |i, (by, [by_place, by_rate])| {
-        by_b += by.b;
-        by_gamma += by.gamma;
-        force += by.force;
-        out.omega += by.omega;
-        pull_per_area(finite, i, by.weight, cot);
-        scatter(&elements[i], &by_place, &mut out.q);
-        scatter(&elements[i], &by_rate, &mut out.rate);
-    });
+    each_over(
+        &finite.team,
+        elements.len(),
+        work,
+        |i, (by, [by_place, by_rate])| {
+            by_b += by.b;
+            by_gamma += by.gamma;
+            force += by.force;
+            out.omega += by.omega;
+            pull_per_area(finite, i, by.weight, cot);
+            scatter(&elements[i], &by_place, &mut out.q);
+            scatter(&elements[i], &by_rate, &mut out.rate);
+        },
+    );
     let spin = skew(&at.omega);
     out.omega -= axial(&(by_b * spin + spin * by_b));
     out.theta = by_gamma.cross(&at.gamma) + force.cross(&phi);

@@ -1,6 +1,6 @@
 //! Elastic forces of a body of finite elements, its strain energy, and their derivatives.
 
-use super::each::each;
+use super::each::each_over;
 use super::element::{Deformed, Local, scatter};
 use super::parts;
 use crate::math::Scalar;
@@ -213,7 +213,7 @@ fn forces<S: Scalar>(finite: &FiniteElements<S>, i: usize, q: &[S]) -> Local<S> 
 pub fn add_forces<S: Scalar>(finite: &FiniteElements<S>, q: &[S], out: &mut [S]) {
     let elements = &finite.mesh.elements;
     let add = |i: usize, force: Local<S>| scatter(&elements[i], &force, out);
-    each(elements.len(), |i| forces(finite, i, q), add);
+    each_over(&finite.team, elements.len(), |i| forces(finite, i, q), add);
     parts::add_forces(finite, q, out);
 }
 
@@ -260,7 +260,7 @@ pub fn pull_forces(
         }
         ([dot(&along, &stress) + shear, bending], force)
     };
-    each(elements.len(), work, |i, (by, force)| {
+    each_over(&finite.team, elements.len(), work, |i, (by, force)| {
         pull_factors(finite, i, by, cot);
         if let Some(by_q) = by_q.as_deref_mut() {
             scatter(&elements[i], &force, by_q);

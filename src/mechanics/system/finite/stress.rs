@@ -3,7 +3,7 @@
 //! Strains of the middle surface at the Gauss points are products of the strains e_p, and curvatures are products of
 //! the unknowns, so that an element with stresses keeps both matrices.
 
-use super::each::each;
+use super::each::each_over;
 use super::element::{Deformed, motion, scatter};
 use super::stiffness::Strained;
 use crate::math::Scalar;
@@ -92,7 +92,7 @@ pub fn stress_ratios<S: Scalar>(finite: &FiniteElements<S>, q: &[S], elements: &
         let of = (&own.membrane, &own.curvature);
         stress_ratios_of(&material(finite, i), finite.thickness[i], of)
     };
-    each(elements.len(), work, |k, ratios| {
+    each_over(&finite.team, elements.len(), work, |k, ratios| {
         let count = finite.mesh.elements[elements[k]].kind().stress_points();
         out.extend(&ratios[..count]);
     });
@@ -133,10 +133,15 @@ pub fn pull_stress_ratios(
             .add_transposed(&by.curvature, &mut force);
         (by.thickness, by.material.young, force)
     };
-    each(elements.len(), work, |k, (thickness, young, force)| {
-        let i = elements[k];
-        cot.thickness[i] += thickness;
-        cot.young[i] += young;
-        scatter(&finite.mesh.elements[i], &force, by_q);
-    });
+    each_over(
+        &finite.team,
+        elements.len(),
+        work,
+        |k, (thickness, young, force)| {
+            let i = elements[k];
+            cot.thickness[i] += thickness;
+            cot.young[i] += young;
+            scatter(&finite.mesh.elements[i], &force, by_q);
+        },
+    );
 }

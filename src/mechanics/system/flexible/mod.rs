@@ -24,7 +24,7 @@ use super::flexing::{self, Flexing, FlexingCotangent, Generalised};
 use super::numbering::Numbering;
 use super::{elastic, finite};
 use crate::linalg::Emit;
-use crate::math::{Scalar, Vec3, rotation};
+use crate::math::{Scalar, Team, Vec3, rotation};
 use crate::model::Model;
 use crate::model::flexible::{FlexibleBody, Form, Inertia};
 use coordinates::{accelerated, add_part, motion_of, part_of, slots};
@@ -54,6 +54,15 @@ fn pull_forces_of(
         Inertia::Full => (pull_inertial(&body.form, at, psi, cot), Vec3::zeros()),
         Inertia::Paper => truncated::pull_back(&body.form, (at, beside), psi, cot),
     }
+}
+
+/// The ranks that compute a motion together.
+pub fn team<S: Scalar>(model: &Model<S>) -> Team {
+    let mut all = model.flexible.iter().filter_map(|body| match &body.form {
+        Form::Finite(own) => Some(own.team.clone()),
+        Form::Modal(_) => None,
+    });
+    all.next().unwrap_or_default()
 }
 
 /// Adds the terms of flexible bodies to M v̇ − f(q, v) at the accelerations `a`.

@@ -210,7 +210,8 @@ impl<'a, S: Scalar> Equations<'a, S> {
             this.emit(at, S::one(), S::one(), emit);
             this.emit_mass(S::one(), emit);
         });
-        pattern.with_pivots(this.known_pivots())
+        let pattern = pattern.with_pivots(this.known_pivots());
+        pattern.with_team(flexible::team(this.model))
     }
 
     /// The pattern of the iteration matrix for the assembly of [`Equations::held_jacobian`].
