@@ -71,7 +71,7 @@ fn cases_in_motion() {
 #[test]
 fn bodies_of_one_motion() {
     let at = tempfile::tempdir().expect("a directory");
-    let problem = two_plates(at.path(), [16, 2], 1);
+    let problem = two_plates(at.path(), [16, 1], 1);
     over_one_to_four(at.path(), &[&problem, "--share-bodies"]);
     let record = optimum(&at.path().join("over_2"));
     assert_eq!(record["gradient_certificate"]["passed"], true);
