@@ -10,9 +10,14 @@ use crate::system::{Numbering, flexible};
 const PART: usize = 2;
 const UNKNOWN: usize = 1 << 30;
 
+/// Memory limit of the tapes of all concurrent motions of this process \[bytes\], unless one is given.
+pub fn usual() -> usize {
+    available_memory().map_or(UNKNOWN, |bytes| bytes / PART)
+}
+
 /// Memory limit of the tape of one motion \[bytes\], if `given` is for all concurrent motions.
 pub fn for_gradients(given: Option<usize>) -> usize {
-    let all = given.unwrap_or_else(|| available_memory().map_or(UNKNOWN, |bytes| bytes / PART));
+    let all = given.unwrap_or_else(usual);
     (all / rayon::current_num_threads().max(1)).max(1)
 }
 

@@ -5,12 +5,13 @@ use super::letters::{Description, Event, Letter, Reply, SharedProblem, Task};
 use super::post::{Pause, Post, Tag};
 use super::tree::shared;
 use crate::cli::interrupt;
+use crate::driver::memory;
 use crate::driver::multi_start::{Run, begin};
 use crate::driver::packed::PackedRun;
 use crate::driver::ranks::{OpenLog, Ranks, StartLog};
 use crate::driver::shared::Shared;
 use crate::optimiser::SavedState;
-use crate::problem::{Division, Problem, available_memory};
+use crate::problem::{Division, Problem};
 use crate::report::evaluations::EvaluationRecord;
 use std::cell::RefCell;
 use std::collections::{BTreeMap, HashMap};
@@ -25,9 +26,6 @@ const AFTER_FAULT: Duration = Duration::from_secs(3);
 const DISMISSAL: Duration = Duration::from_secs(3);
 /// Longest sleep of rank 0 between two looks.
 const LOOK: Duration = Duration::from_micros(500);
-
-/// Memory of a rank for gradients where that of the machine is unknown \[bytes\].
-const UNKNOWN: usize = 1 << 28;
 
 /// A start: the number of its problem, and its place in the order of that problem's starts. Lower ones begin first. Place
 /// 0 is that of a start that was not announced, as from the optimum before.
@@ -315,11 +313,9 @@ impl Ranks for Hub {
                 Division::Events => 0,
             });
         let together = (bodies && cases < 2 && problem.can_be_shared()).then(|| {
-            let given = problem.simulation.memory;
             // All ranks may be on one machine.
-            let usual =
-                || available_memory().map_or(UNKNOWN, |bytes| bytes / 2 / self.post.ranks());
-            given.unwrap_or_else(usual)
+            let given = problem.simulation.memory;
+            given.unwrap_or_else(|| memory::usual() / self.post.ranks())
         });
         let ranks = match together {
             Some(_) => self.post.ranks(),

@@ -152,18 +152,6 @@ impl Post {
         to.send_with_tag(numbers, Tag::Numbers as i32);
     }
 
-    /// Gives numbers to a rank, and takes those that it gives at the same time.
-    pub fn exchange_numbers(&self, with: usize, numbers: &[f64]) -> Vec<f64> {
-        let world = SimpleCommunicator::world();
-        let to = world.process_at_rank(with as i32);
-        mpi::request::scope(|scope| {
-            let sent = to.immediate_send_with_tag(scope, numbers, Tag::Numbers as i32);
-            let told = self.wait_for_numbers(with);
-            sent.wait();
-            told
-        })
-    }
-
     /// Waits for numbers from a rank that computes its share of a motion.
     pub fn wait_for_numbers(&self, from: usize) -> Vec<f64> {
         let world = SimpleCommunicator::world();

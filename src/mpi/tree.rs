@@ -99,25 +99,6 @@ impl Exchange for Tree {
 /// Numbers before those that are given: which call it is, and whether a rank must end.
 const HEAD: usize = 2;
 
-impl Numbers {
-    /// What all ranks have, a power of two, in their order: each exchanges what it knows with one that knows as much, until
-    /// all know all, log₂ of their number messages in a row (recursive doubling: Thakur, Rabenseifner & Gropp 2005).
-    fn doubled(&self, own: Vec<f64>, exchange: impl Fn(usize, &[f64]) -> Vec<f64>) -> Vec<f64> {
-        let (rank, mut all, mut distance) = (self.rank(), own, 1);
-        while distance < self.ranks() {
-            let told = exchange(rank ^ distance, &all);
-            let (mut first, second) = match rank & distance {
-                0 => (all, told),
-                _ => (told, all),
-            };
-            first[1] = first[1].max(second[1]);
-            first.extend(&second[HEAD..]);
-            (all, distance) = (first, 2 * distance);
-        }
-        all
-    }
-}
-
 impl Gather for Numbers {
     fn rank(&self) -> usize {
         self.tree.post.rank()
@@ -131,16 +112,13 @@ impl Gather for Numbers {
         let post = self.tree.post;
         let call = self.calls.fetch_add(1, Ordering::Relaxed) as f64;
         let must_end = f64::from(u8::from(progress().is_over()));
-        let same_place = |from: usize, told: &[f64]| {
+        let take = |from: usize| {
+            let told = post.wait_for_numbers(from);
             assert!(
                 told[0] == call,
                 "rank {from} is at another place than rank {}: are their processors or programs different?",
                 post.rank()
             );
-        };
-        let take = |from: usize| {
-            let told = post.wait_for_numbers(from);
-            same_place(from, &told);
             Ok(told)
         };
         let add = |all: &mut Vec<f64>, more: Vec<f64>| {
@@ -149,16 +127,8 @@ impl Gather for Numbers {
         };
         let give = |to: usize, all: &Vec<f64>| post.send_numbers(to, all);
         let own = [&[call, must_end], own].concat();
-        let mut all = match self.ranks().is_power_of_two() {
-            true => self.doubled(own, |with, all| {
-                let told = post.exchange_numbers(with, all);
-                same_place(with, &told);
-                told
-            }),
-            false => match self.tree.gather(own, take, add, give) {
-                Ok(all) => all,
-                Err(Lost) => unreachable!("numbers are waited for until they come"),
-            },
+        let Ok(mut all) = self.tree.gather(own, take, add, give) else {
+            unreachable!("numbers are waited for until they come");
         };
         if all[1] > 0.0 {
             self.over.store(true, Ordering::Relaxed);

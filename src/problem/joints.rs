@@ -20,15 +20,20 @@ pub fn joints<S: Scalar>(document: &Document, assembly: &Assembly<S>) -> Vec<Joi
     document.joints.iter().map(one).collect()
 }
 
+/// The ground axis that is farthest from an axis; of several the first.
+pub(super) fn farthest(axis: [f64; 3]) -> usize {
+    let nearer = |&i: &usize, &j: &usize| axis[i].abs().total_cmp(&axis[j].abs());
+    (0..3)
+        .min_by(nearer)
+        .expect("a vector has three components")
+}
+
 /// A right-handed orthonormal triad whose third axis is along `axis`. The first is the projection
 /// of the ground axis that is farthest from it.
 fn triad<S: Scalar>(axis: Vec3<S>) -> [Vec3<S>; 3] {
     let e3 = unit(axis);
-    let farthest = (0..3)
-        .min_by(|&i, &j| e3[i].re().abs().total_cmp(&e3[j].re().abs()))
-        .expect("a vector has three components");
     let mut e1 = Vec3::zeros();
-    e1[farthest] = S::one();
+    e1[farthest([e3.x.re(), e3.y.re(), e3.z.re()])] = S::one();
     triad_with(e3, e1)
 }
 

@@ -4,7 +4,7 @@
 use super::couplings::{OBLIQUE, close, oblique, turned};
 use super::stops::rebound;
 use crate::reference::documents::{
-    faults_say, methods, problem as parsed, reversed, unlowered_values, values, vary,
+    extended, faults_say, methods, problem as parsed, reversed, unlowered_values, values, vary,
 };
 use crate::reference::gradients::gradients_are_exact;
 use serde_json::Value;
@@ -326,17 +326,14 @@ fn bad_boxes_and_wheels_are_told() {
 #[test]
 fn a_point_mass_has_no_wheel_and_no_surface() {
     let file = |between: [&str; 2], more: Value| {
-        let mut contact = json!({"between": between, "at": {"a": [0, 0, 0], "b": [0, 0, 0]}, "stiffness": 1000, "width": 0.001});
-        for (key, value) in more.as_object().expect("an object") {
-            contact[key] = value.clone();
-        }
+        let own = json!({"between": between, "at": {"a": [0, 0, 0], "b": [0, 0, 0]}, "stiffness": 1000, "width": 0.001});
         json!({
             "version": 1, "name": "point", "gravity": [0, 0, 0],
             "bodies": {
                 "P": {"shape": "point", "mass": 1, "place": {"at": [0, 0.2, 0]}},
                 "S": {"shape": {"sphere": {"radius": 0.1}}, "mass": 1, "place": {"at": [0.4, 0, 0.3]}}
             },
-            "loads": {"x": {"contact": contact}},
+            "loads": {"x": {"contact": extended(own, &more)}},
             "simulation": {"duration": 0.1},
             "functions": {"T": "duration"}
         })

@@ -442,11 +442,10 @@ fn a_drive_that_is_off_has_no_power() {
         }
     });
     let own = problem(&document);
-    let at = Simulated::of(&own, &own.start()).expect("a motion");
+    let at = simulated(&own);
     // ∫ J φ̈ φ̇ with φ̈ = φ̇ = t, then φ̈ = 2 and φ̇ = 1 + 2 (t − 1).
     for (name, exact) in [("work of first", 0.5), ("work of second", 8.0)] {
-        let f = own.function_names.iter().position(|own| own == name);
-        let found = at.value(f.expect("a function"));
+        let found = at.value(number(&own, name));
         assert!((found - exact).abs() < 1e-8, "{name}: {found}");
     }
 }
@@ -494,6 +493,10 @@ fn a_weld_beside_the_joint_of_a_drive_that_was_on() {
     assert!((work - lift).abs() < 1e-6, "{work} {lift}");
     assert!(check(&own, &own.start()).is_ok());
     let own = problem(&file(true));
-    let found = check(&own, &own.start());
-    assert!(found.is_err() || found.is_ok_and(|all| !all.is_empty()));
+    let found = check(&own, &own.start()).expect("derivatives");
+    let unknown = found.iter().filter(|own| own.adjoint.is_nan());
+    let unknown: Vec<&str> = unknown
+        .map(|found| own.function_names[found.function].as_str())
+        .collect();
+    assert_eq!(unknown, ["R in falls"]);
 }

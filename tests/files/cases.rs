@@ -670,15 +670,10 @@ fn a_case_of_modes_leaves_out_velocities() {
     file["functions"]["f of rings"] =
         json!({"over_cases": {"function": "f", "by": "sum", "cases": ["rings"]}});
     let problem = parsed(&file);
-    let at = Simulated::of(&problem, &problem.start()).expect("an analysis");
-    let f = problem
-        .function_names
-        .iter()
-        .position(|name| name == "f of rings");
     // A rod that swings about its end: ω² = g l/2 / (l²/3 + r²/4).
     let (l, r) = (0.5_f64, 0.01_f64);
     let square = 0.5 * 9.81 * l / (l * l / 3.0 + r * r / 4.0);
     let exact = square.sqrt() / (2.0 * std::f64::consts::PI);
-    let found = at.value(f.expect("a function"));
+    let found = value(&problem, "f of rings");
     assert!((found - exact).abs() < 1e-9 * exact, "{found} {exact}");
 }

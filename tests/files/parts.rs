@@ -1,10 +1,11 @@
 //! Parts and their uses, and defaults: the same scene as one that is written out, exact derivatives, faults with their place.
 
-use crate::reference::documents::{faults_say, values};
+use super::turned_scenes::turned;
+use crate::reference::documents::{extended, faults_say, values};
 use flexbody_driver::check;
 use flexbody_driver::evaluate::Evaluated;
 use flexbody_problem::{Override, Problem};
-use nalgebra::{Unit, UnitQuaternion, Vector3};
+use nalgebra::{Rotation3, Vector3};
 use serde_json::Value;
 
 /// A machine of a chassis on a rail and uses of an arm of two links.
@@ -658,32 +659,22 @@ fn faults_of_parts_have_their_place() {
 /// what air and a bushing hold, has the same energies wherever the part stands, in gravity that turns with it.
 #[test]
 fn directions_turn_with_their_part() {
-    let turn = |axis: [f64; 3], angle: f64, v: [f64; 3]| {
-        let n = Unit::new_normalize(Vector3::from(axis));
-        let v = UnitQuaternion::from_axis_angle(&n, angle) * Vector3::from(v);
-        [v.x, v.y, v.z]
-    };
     let (axis, angle) = ([0.3, 0.8, -0.7], 2.3);
+    let about = Vector3::from(axis).normalize();
     let contact = |more: Value| {
-        let mut own = json!({
+        let own = json!({
             "between": ["b", "ground"], "at": {"a": [0, 0, 0], "b": [0, 0, 0]}, "radius": 0.08, "stiffness": 3000,
             "dissipation": 0.2, "width": 0.001, "friction": {"coefficient": 0.4, "width": 0.05},
             "surface": {"plane": {"normal": [0, 1, 0]}}
         });
-        for (key, value) in more.as_object().expect("an object") {
-            own[key] = value.clone();
-        }
-        json!({"l": {"contact": own}})
+        json!({"l": {"contact": extended(own, &more)}})
     };
     let heights = json!({"normal": [0, 1, 0], "direction": [1, 0, 0], "along": [-1, 0, 0.5, 2],
                          "across": [-1, 0, 2], "heights": [[0, 0.1, 0, 0], [0, 0, 0.1, 0.05], [0, 0, 0, 0]]});
     let stiffness = json!({"diagonal": [10, 100, 1000, 1, 2, 3]});
     let free = |axes: Value| {
-        let mut own = json!({"between": ["b", "ground"], "at": [0.1, 0.3, 0]});
-        for (key, value) in axes.as_object().expect("an object") {
-            own[key] = value.clone();
-        }
-        json!({"f": {"free": own}})
+        let own = json!({"between": ["b", "ground"], "at": [0.1, 0.3, 0]});
+        json!({"f": {"free": extended(own, &axes)}})
     };
     let scenes = [
         (contact(json!({"half": [0.1, 0.02, 0.05]})), json!({})),
@@ -711,7 +702,7 @@ fn directions_turn_with_their_part() {
     for (loads, joints) in scenes {
         let at = |angle: f64| {
             let file = json!({
-                "version": 1, "name": "turned", "gravity": turn(axis, angle, [1, -9, 2].map(f64::from)),
+                "version": 1, "name": "turned", "gravity": turned(&Rotation3::new(about * angle), [1.0, -9.0, 2.0]),
                 "simulation": {"duration": 0.3, "tolerance": 1e-10},
                 "functions": {"speed": {"final": {"speed": {"body": "u/b"}}}, "energy": {"final": {"energy": "kinetic"}}},
                 "parts": {"p": {

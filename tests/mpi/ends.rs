@@ -143,23 +143,28 @@ fn an_interrupt_ends_all_and_keeps_the_log() {
     );
 }
 
-/// A signal to one rank alone: all ranks end their starts, and the best design is written.
-#[test]
-fn a_signal_to_one_rank_ends_all() {
-    let at = tempfile::tempdir().expect("a directory");
+/// Sends a signal to the first of two ranks that run `arguments`, and to the last of two others, after `wait` with the name of
+/// the output: all end soon, and the best design is written.
+fn a_signal_ends_all(at: &Path, arguments: &[&str], wait: impl Fn(&str)) {
     for (k, signalled) in ["first", "last"].into_iter().enumerate() {
-        let arguments = [TREBUCHET, "--starts", "200", "--output", signalled];
-        let mut run = start(2, at.path(), &arguments);
+        let mut run = start(2, at, &[arguments, &["--output", signalled]].concat());
         let mut ranks = ranks_of(signalled, 2);
         ranks.sort_unstable();
-        std::thread::sleep(Duration::from_secs(2));
+        wait(signalled);
         send("-INT", ranks[k]);
         let (code, time) = end_of(&mut run);
         assert!(time < SOON, "{time:?}");
         assert_eq!(code, Some(130));
         no_orphans(signalled);
-        assert!(at.path().join(signalled).join("optimum.json").exists());
+        assert!(at.join(signalled).join("optimum.json").exists());
     }
+}
+
+#[test]
+fn a_signal_to_one_rank_ends_all() {
+    let at = tempfile::tempdir().expect("a directory");
+    let wait = |_: &str| std::thread::sleep(Duration::from_secs(2));
+    a_signal_ends_all(at.path(), &[TREBUCHET, "--starts", "200"], wait);
 }
 
 /// The same where all ranks compute every motion together: none waits for another that has ended.
@@ -167,25 +172,9 @@ fn a_signal_to_one_rank_ends_all() {
 fn a_signal_to_one_rank_ends_motions_of_all() {
     let at = tempfile::tempdir().expect("a directory");
     let problem = two_plates(at.path(), [8, 2], 1000);
-    for (k, signalled) in ["first", "last"].into_iter().enumerate() {
-        let arguments = [
-            &problem,
-            "--share-bodies",
-            "--no-certificate",
-            "--output",
-            signalled,
-        ];
-        let mut run = start(2, at.path(), &arguments);
-        let mut ranks = ranks_of(signalled, 2);
-        ranks.sort_unstable();
-        wait_for(signalled, &at.path().join(signalled), 3);
-        send("-INT", ranks[k]);
-        let (code, time) = end_of(&mut run);
-        assert!(time < SOON, "{time:?}");
-        assert_eq!(code, Some(130));
-        no_orphans(signalled);
-        assert!(at.path().join(signalled).join("optimum.json").exists());
-    }
+    let arguments = [&problem, "--share-bodies", "--no-certificate"];
+    let wait = |output: &str| wait_for(output, &at.path().join(output), 3);
+    a_signal_ends_all(at.path(), &arguments, wait);
 }
 
 /// A rank that dies amid a motion that all compute ends all, and the run goes on in one process.

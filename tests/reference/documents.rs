@@ -146,6 +146,13 @@ pub fn reversed(file: &Value, sections: &[&str]) -> Value {
     other
 }
 
+/// An object with the entries of another, which replace its own.
+pub fn extended(mut own: Value, more: &Value) -> Value {
+    let entries = more.as_object().expect("an object").clone();
+    own.as_object_mut().expect("an object").extend(entries);
+    own
+}
+
 /// The value of a function there.
 pub fn value(file: &Value, function: &str) -> f64 {
     let names = problem(file).function_names;

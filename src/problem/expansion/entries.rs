@@ -4,6 +4,7 @@ use super::used::Used;
 use super::writer::Writer;
 use crate::derived::parameter_of;
 use crate::finding::Finding;
+use crate::joints::farthest;
 use crate::placement::GROUND;
 use crate::pointer::join;
 use serde_json::{Map, Value};
@@ -232,12 +233,9 @@ fn write_axes(joint: &mut Value) {
         .entry("axis")
         .or_insert_with(|| [0.0, 0.0, 1.0].into());
     let numbers = axis.as_array().into_iter().flatten();
-    let numbers: Vec<f64> = numbers.filter_map(Value::as_f64).map(f64::abs).collect();
+    let numbers: Vec<f64> = numbers.filter_map(Value::as_f64).collect();
     let [x, y, z] = numbers[..] else { return };
-    let cross = match (x <= y && x <= z, y <= z) {
-        (true, _) => [1.0, 0.0, 0.0],
-        (_, true) => [0.0, 1.0, 0.0],
-        _ => [0.0, 0.0, 1.0],
-    };
+    let mut cross = [0.0; 3];
+    cross[farthest([x, y, z])] = 1.0;
     joint.entry("cross").or_insert_with(|| cross.into());
 }

@@ -138,18 +138,20 @@ struct Backwards {
     /// z̄ of the phase that was swept last, and the sum of the sizes of its terms.
     state: Vec<f64>,
     terms: f64,
-    /// Of the z̄ with which the next sweep begins: the sizes of its terms by its own size. Its round-off is so much larger.
+    /// Of the z̄ with which the next sweep begins: the sizes of its terms by its own size.
     cancelled: f64,
 }
 
 impl Backwards {
-    fn add(&mut self, count: usize, found: &[Derivative], by: f64) {
+    /// Adds derivatives by variables and state, times `by`. The round-off of `by` is `cancelled` times that of a number of
+    /// its size.
+    fn add(&mut self, count: usize, found: &[Derivative], (by, cancelled): (f64, f64)) {
+        let terms = |own: &Derivative| (by * own.terms).abs() * cancelled;
         for (own, more) in self.row.iter_mut().zip(found) {
             own.value += by * more.value;
-            own.terms += (by * more.terms).abs() * self.cancelled;
+            own.terms += terms(more);
         }
-        let of_state = found[count..].iter().map(|own| (by * own.terms).abs());
-        self.terms += of_state.sum::<f64>() * self.cancelled;
+        self.terms += found[count..].iter().map(terms).sum::<f64>();
         let state = found[count..].iter().map(|own| by * own.value);
         match self.state.is_empty() {
             true => self.state = state.collect(),
@@ -231,19 +233,17 @@ pub(super) fn derivatives(
         let mut of_ends = of_ends.iter();
         for (own, end) in sums.iter_mut().zip(&ends) {
             let weights = std::mem::take(&mut own.weights);
-            let cancelled = std::mem::replace(&mut own.cancelled, 1.0);
             for &(k, by) in &weights {
                 let place = of_phase(k).and_then(|(_, f)| functions.binary_search(&f).ok());
                 if let Some(place) = place {
-                    own.add(count, &of_functions[place], by);
+                    own.add(count, &of_functions[place], (by, 1.0));
                 }
             }
             own.weights = weights;
             if let Some(end) = end
                 && let Some(row) = of_ends.next()
             {
-                own.cancelled = cancelled;
-                own.add(count, row, 1.0);
+                own.add(count, row, (1.0, own.cancelled));
                 // t_{p+1} = t_p + T_p.
                 if let Some(time) = own.state.last_mut() {
                     *time += end.duration;
