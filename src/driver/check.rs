@@ -22,6 +22,8 @@ use rayon::prelude::*;
 
 /// A derivative below this part of its terms has lost digits by cancellation.
 const SMALL: f64 = 1e-3;
+/// Relative noise of a derivative up to which it counts as exact.
+const LITTLE: f64 = 1e-6;
 
 /// One derivative, computed twice.
 #[derive(Clone, Debug, PartialEq)]
@@ -61,6 +63,11 @@ impl CheckedDerivative {
     pub fn differs_by_round_off(&self) -> bool {
         let small = self.complex_step.abs() <= SMALL * self.terms;
         small && (self.adjoint - self.complex_step).abs() <= self.round_off()
+    }
+
+    /// Whether its two values differ by no more than what Newton's method leaves, and that is little.
+    pub fn differs_by_noise(&self) -> bool {
+        self.relative_difference() <= self.noise() && self.noise() <= LITTLE
     }
 
     fn round_off(&self) -> f64 {
@@ -370,6 +377,12 @@ mod tests {
             terms: 1.0,
             in_use: adjoint,
         };
+        let noisy = |in_use: f64| CheckedDerivative {
+            in_use,
+            ..pair(1.0 + 1e-10, 1.0)
+        };
+        assert!(noisy(1.0 + 3e-10).differs_by_noise());
+        assert!(!noisy(1.0 + 1e-10).differs_by_noise() && !noisy(1.1).differs_by_noise());
         let small = pair(1e-12 + 5e-15, 1e-12);
         assert!(!small.is_round_off() && small.differs_by_round_off());
         assert!(small.relative_difference() > 1e-3);

@@ -17,6 +17,9 @@ use crate::math::{Complex64, Dual, Parameters};
 use crate::model::flexible::FlexibleBody;
 use crate::model::{JointFrame, RigidBody};
 use crate::problem::{Composition, EndCotangent, Focus, Partials, Problem};
+use crate::system::equilibrium::FrozenMode;
+use crate::system::flexible;
+use rayon::prelude::*;
 use std::borrow::Cow;
 use std::sync::Arc;
 
@@ -381,24 +384,35 @@ impl Evaluated {
             Some(sizes) => sizes.iter().map(Scene::parameters).collect(),
             None => by_parameters.clone(),
         };
-        let mut all = vec![Vec::with_capacity(self.x.len()); count];
-        for i in 0..self.x.len() {
+        let along = |i: usize| -> Result<Vec<[f64; 2]>, IntegrationFailure> {
             let scene = moved_scene(problem, &self.x, i)?;
             let moved: Vec<f64> = scene.parameters().into_iter().map(|p| p.du).collect();
             let rows = by_parameters.iter().zip(&sizes).zip(&adjoint.modes);
-            for (gradient, ((by, sizes), modes)) in all.iter_mut().zip(rows) {
-                let mut sum = Derivative::default();
+            let one = |((by, sizes), modes): ((&Vec<f64>, &Vec<f64>), &Vec<FrozenMode>)| {
+                let [mut value, mut all] = [0.0; 2];
                 for by_mode in modes.iter().map(|mode| mode.along(&scene.model)) {
-                    sum.value += by_mode;
-                    sum.terms += by_mode.abs();
+                    value += by_mode;
+                    all += by_mode.abs();
                 }
                 // A parameter without a derivative concerns the functions that depend on it alone.
                 let terms = by.iter().zip(sizes).zip(&moved);
                 for ((a, size), b) in terms.filter(|((a, size), _)| **a != 0.0 || **size != 0.0) {
-                    sum.value += a * b;
-                    sum.terms += (size * b).abs();
+                    value += a * b;
+                    all += (size * b).abs();
                 }
-                gradient.push(sum);
+                [value, all]
+            };
+            Ok(rows.map(one).collect())
+        };
+        // Variables are divided among threads and ranks. One that fails does so everywhere.
+        let team = flexible::team(&self.scene.model);
+        let share = team.share(0..self.x.len()).into_par_iter();
+        let own: Vec<Option<Vec<[f64; 2]>>> = share.map(|i| along(i).ok()).collect();
+        let mut all = vec![Vec::with_capacity(self.x.len()); count];
+        for (i, of_variable) in team.gather(own).into_iter().enumerate() {
+            let of_variable = of_variable.map_or_else(|| along(i), Ok)?;
+            for (gradient, [value, terms]) in all.iter_mut().zip(of_variable) {
+                gradient.push(Derivative { value, terms });
             }
         }
         Ok((all, adjoint.counts))

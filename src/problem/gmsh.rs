@@ -13,6 +13,7 @@ use crate::schema::Document;
 use crate::schema::structures::{Mesh as Written, ReadMesh, Structure};
 use crate::structures::mesh::{Edge, Mesh, shell_edges};
 use crate::structures::quality::faults;
+use crate::structures::sheets::fold_angle;
 use crate::structures::shell::{ShellKind, ShellNodes};
 use std::collections::{BTreeMap, HashMap, HashSet};
 use std::sync::Arc;
@@ -112,7 +113,7 @@ fn mesh(mut msh: Msh, (kind, metres): (ShellKind, f64)) -> Result<ReadMesh, Text
         _ => complete(&mut elements, &mut msh.places)?,
     }
     if most == 2 {
-        align(&mut elements);
+        align(&mut elements, (&msh.places, kind));
     }
     let mut read = ReadMesh::default();
     let (index, of_file) = assemble(&elements, (&msh.places, metres), (most, kind), &mut read);
@@ -235,7 +236,7 @@ fn complete(elements: &mut [Element], places: &mut Vec<Vec3<f64>>) -> Result<(),
 
 /// Turns quadrangles over so that neighbours agree on the side to which their normals point: the first of the file
 /// of each connected part stays.
-fn align(elements: &mut [Element]) {
+fn align(elements: &mut [Element], (places, kind): (&[Vec3<f64>], ShellKind)) {
     let shells: Vec<usize> = (0..elements.len())
         .filter(|&e| elements[e].dimension() == 2)
         .collect();
@@ -255,11 +256,17 @@ fn align(elements: &mut [Element]) {
         };
         while let Some(e) = front.pop() {
             for edge in edges(&elements[e].nodes) {
-                // Three sheets at one edge have no common side.
-                let &[a, b] = &at_edge[&key(edge)][..] else {
-                    continue;
+                let others = at_edge[&key(edge)].iter().copied().filter(|&k| k != e);
+                let others: Vec<usize> = others.collect();
+                let other = match others[..] {
+                    [] => continue,
+                    [other] => other,
+                    // Of three sheets at one edge two may continue each other.
+                    _ => match smoothest(elements, places, (e, &others), fold_angle(kind)) {
+                        Some(other) => other,
+                        None => continue,
+                    },
                 };
-                let other = if a == e { b } else { a };
                 if !seen.insert(other) {
                     continue;
                 }
@@ -270,6 +277,36 @@ fn align(elements: &mut [Element]) {
             }
         }
     }
+}
+
+/// The one of the others at an edge that continues an element with the smallest fold, if that is below an angle.
+fn smoothest(
+    elements: &[Element],
+    places: &[Vec3<f64>],
+    (own, others): (usize, &[usize]),
+    fold: f64,
+) -> Option<usize> {
+    let shape = |e: usize| {
+        let [a, b, c, d] = [0, 1, 2, 3].map(|k| places[elements[e].nodes[k]]);
+        ((c - a).cross(&(d - b)).normalize(), (a + b + c + d) / 4.0)
+    };
+    let shared = |e: usize| {
+        let nodes = elements[own].nodes[..4].iter();
+        nodes
+            .copied()
+            .filter(move |k| elements[e].nodes[..4].contains(k))
+    };
+    let (normal, middle) = shape(own);
+    let continued = |&e: &usize| {
+        let (other, beyond) = shape(e);
+        let edge: Vec<Vec3<f64>> = shared(e).map(|k| places[k]).collect();
+        let on = edge.iter().sum::<Vec3<f64>>() / edge.len() as f64;
+        let fold = normal.dot(&other).abs();
+        ((middle - on).dot(&(beyond - on)) < 0.0).then_some((e, fold))
+    };
+    let all = others.iter().filter_map(continued);
+    let best = all.max_by(|a, b| a.1.total_cmp(&b.1))?;
+    (best.1 > fold.cos()).then_some(best.0)
 }
 
 /// Makes the shells or beams of the elements of the dimension `most`. Gives the number of each node of the file in the

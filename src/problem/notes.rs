@@ -1,21 +1,30 @@
 //! What a run says of its input: what is left out, used though it does not fit, or stiffer than it looks.
 
+use super::elements::part_of_file;
 use super::{Problem, beam, elements, holds, mass};
+use crate::math::Vec3;
 use crate::model::rigid_body::{ROUNDING, excess_of_inertia};
 use crate::schema::Document;
 use crate::schema::flexible::Strain;
 use crate::structures::modal::BeamModes;
+use crate::structures::quality::most_turned;
+use crate::structures::shell::ShellKind;
 use crate::system::left_out;
+
+/// Turns of the normal from the middle of an element to a node, of four and of nine nodes, that are told \[rad\].
+const WARPED: f64 = 0.2;
+const CURVED: f64 = 0.4;
 
 impl Problem {
     /// Redundant rows of joints, inertias of no solid within the tolerance of the input, surfaces seen from inside, edges
-    /// that axes alone make rigid, and beams that lock.
+    /// that axes alone make rigid, beams that lock, and elements that turn much within themselves.
     pub fn notes_of_input(&self) -> Vec<String> {
         let mut notes = left_out::told(&self.redundant);
         notes.extend(self.inertias());
         notes.extend(inwards(&self.written));
         notes.extend(edges(&self.written));
         notes.extend(locked_beams(&self.written));
+        notes.extend(turned_elements(&self.written));
         notes
     }
 
@@ -59,6 +68,35 @@ fn locked_beams(document: &Document) -> impl Iterator<Item = String> {
                 "body \"{name}\": \"stretch\": {} with von Karman's strains, where this bending needs {needed}: it becomes too \
                  stiff where it bends by more than its thickness (membrane locking); without the key it has as many as it needs",
                 modes.stretch
+            )
+        })
+    })
+}
+
+/// Elements of meshes whose normal turns so much that they err.
+fn turned_elements(document: &Document) -> impl Iterator<Item = String> {
+    let bodies = document.bodies.iter().filter_map(|(name, body)| {
+        let own = &body.elements.as_ref()?.structure;
+        Some((format!("body \"{name}\""), own))
+    });
+    let structures =
+        (document.structures.iter()).map(|(name, own)| (format!("structure \"{name}\""), own));
+    bodies.chain(structures).filter_map(|(what, own)| {
+        let part = part_of_file(own);
+        let (shell, turn) = most_turned(&part.mesh, &part.nodes)?;
+        let element = &part.mesh.shells[shell];
+        let (most, word) = match ShellKind::of(element) {
+            ShellKind::Mitc4 => (WARPED, "warped"),
+            ShellKind::Mitc9 => (CURVED, "curved"),
+        };
+        let count = element.iter().count() as f64;
+        let [x, y, z] = element.iter().map(|&k| part.nodes[k]).sum::<Vec3<f64>>().unscale(count).into();
+        (turn > most).then(|| {
+            format!(
+                "{what}: the element at ({x:.4}, {y:.4}, {z:.4}) m is {word}: its normal turns by {:.0} degrees from its middle to \
+                 a node; from {:.0} on such elements err, and smaller ones err less",
+                turn.to_degrees(),
+                most.to_degrees()
             )
         })
     })

@@ -2,7 +2,7 @@
 //! what has none.
 
 use super::machines_at_rest::{fault, hinge, machine, rod};
-use crate::reference::documents::{problem as parsed, values};
+use crate::reference::documents::{problem as parsed, value, values};
 use crate::reference::gradients::{gradients_are_exact, gradients_are_slopes};
 use flexbody_driver::{Simulated, check};
 use nalgebra::{DMatrix, SymmetricEigen};
@@ -383,4 +383,117 @@ fn what_has_no_frequencies_is_told() {
         text.contains("a natural frequency of a machine in motion"),
         "{text}"
     );
+}
+
+/// Two beams that are welded, bent by their weight; `damped` puts a hinge with a spring and a damper between them.
+fn two_beams(damped: bool, functions: Value) -> Value {
+    let beam = |length: f64,
+                height: f64,
+                young: f64,
+                density: f64,
+                modes: [u32; 3],
+                degrees: f64,
+                at: &str| {
+        let place = match at {
+            "" => json!([0, 0, 0]),
+            at => json!(at),
+        };
+        json!({
+            "beam": {
+                "length": length, "section": {"rectangle": {"width": 0.02, "height": height}},
+                "material": {"young": young, "poisson": 0.3, "density": density},
+                "modes": {"bending_y": modes[0], "bending_z": modes[1], "torsion": modes[2]}
+            },
+            "place": {"put": "start", "at": place, "turn": {"axis": [0, 0, 1], "degrees": degrees}}
+        })
+    };
+    let mut file = json!({
+        "version": 1, "name": "two beams", "analysis": "rest",
+        "bodies": {
+            "b0": beam(0.455, 0.0105, 70e9, 2700.0, [4, 4, 0], -30.0, ""),
+            "b1": beam(0.384, 0.0168, 200e9, 7800.0, [6, 0, 2], -70.0, "b0.end")
+        },
+        "joints": {
+            "root": {"weld": {"between": ["b0", "ground"], "at": "b0.start"}},
+            "middle": {"weld": {"between": ["b0", "b1"], "at": "b1.start"}}
+        },
+        "functions": functions,
+        "variables": {
+            "height": {"path": "/bodies/b0/beam/section/rectangle/height", "lower": 0.005, "upper": 0.02},
+            "young": {"path": "/bodies/b1/beam/material/young", "lower": 100e9, "upper": 300e9},
+            "length": {"path": "/bodies/b1/beam/length", "lower": 0.2, "upper": 0.6}
+        }
+    });
+    if damped {
+        file["joints"]["middle"] =
+            json!({"revolute": {"between": ["b0", "b1"], "at": "b1.start", "axis": [0, 0, 1]}});
+        file["loads"] = json!({"spring": {
+            "torsion_spring": {"joint": "middle", "stiffness": 40, "damping": 0.05}
+        }});
+    }
+    file
+}
+
+/// The modes of low and of high frequencies at once.
+#[test]
+fn derivatives_of_many_modes_are_exact() {
+    let mut functions = json!({});
+    for mode in 1..=18 {
+        functions[format!("f{mode}")] =
+            json!({"frequency": {"mode": mode, "follow": mode % 2 == 0}});
+    }
+    gradients_are_exact(
+        &parsed(&two_beams(false, functions)),
+        &json!("without damping"),
+    );
+    let mut functions = json!({});
+    for mode in 1..=9 {
+        functions[format!("f{mode}")] = json!({"frequency": {"mode": mode, "damped": true}});
+    }
+    gradients_are_exact(&parsed(&two_beams(true, functions)), &json!("damped"));
+}
+
+/// A small damping ratio is the small part of a rate: its derivatives are exact to round-off of that.
+#[test]
+fn derivatives_of_small_damping_ratios_are_exact() {
+    let functions =
+        json!({"z1": {"damping_ratio": {"mode": 1}}, "z5": {"damping_ratio": {"mode": 5}}});
+    let problem = parsed(&two_beams(true, functions));
+    let x = problem.start();
+    for own in check(&problem, &x).expect("derivatives") {
+        let off = (own.adjoint - own.complex_step).abs() * x[own.variable];
+        assert!(off < 1e-13, "{own:?}");
+    }
+}
+
+/// A force that turns with its body has no potential, and the stiffness is not symmetric.
+#[test]
+fn frequencies_under_a_following_force_are_those_with_damping() {
+    for mode in [1, 4, 5, 7] {
+        let function = |damped: bool| json!({"f": {"frequency": {"mode": mode, "damped": damped}}});
+        let file = |functions: Value| {
+            json!({
+                "version": 1, "name": "plate", "analysis": "rest", "gravity": [0, 0, 0],
+                "materials": {"m": {"young": 5e9, "poisson": 0.3, "density": 6200}},
+                "bodies": {"b": {"elements": {
+                    "structure": {
+                        "mesh": {"plate": {"length": 0.7, "width": 0.2, "elements": [4, 2]}},
+                        "material": "m", "thickness": 0.015
+                    },
+                    "frame": {"clamped": "x0"},
+                    "points": {"start": {"edge": "x0"}, "end": {"edge": "x1"}}
+                }}},
+                "joints": {"j": {"weld": {"between": ["b", "ground"], "at": "b.start"}}},
+                "loads": {"p": {"force": {
+                    "body": "b", "point": "end", "direction": [0, 0, 1], "axes": "body", "magnitude": 17.1
+                }}},
+                "functions": functions
+            })
+        };
+        let [plain, damped] = [false, true].map(|own| value(&file(function(own)), "f"));
+        assert!(
+            (plain - damped).abs() < 1e-9 * damped,
+            "{mode}: {plain} {damped}"
+        );
+    }
 }

@@ -71,3 +71,29 @@ fn faults_name_the_element_and_the_node() {
         "{wound:?}"
     );
 }
+
+/// Where a web stands on the edge of two elements, these are one sheet as well.
+#[test]
+fn opposite_elements_below_a_web_are_found() {
+    let web = |reversed: bool| {
+        let mut g = plate([1.0, 1.0], [2, 1]);
+        let edge = [2, 5, 8].map(|k| g.mesh.shells[0][k]);
+        let first = g.nodes.len();
+        for row in [0.25, 0.5] {
+            let above = edge.map(|k| g.nodes[k] + Vec3::new(0.0, 0.0, row));
+            g.nodes.extend(above);
+        }
+        g.mesh.nodes = g.nodes.len();
+        let row = |k: usize| [0, 1, 2].map(|i| first + 3 * k + i);
+        let [[a, b, c], [d, e, f], [h, i, j]] = [edge, row(0), row(1)];
+        g.mesh.shells.push([a, b, c, d, e, f, h, i, j].into());
+        if reversed {
+            let old = g.mesh.shells[1];
+            g.mesh.shells[1] = [2, 1, 0, 5, 4, 3, 8, 7, 6].map(|k| old[k]).into();
+        }
+        faults(&g.mesh, &g.nodes)
+    };
+    assert_eq!(web(false), []);
+    let (first, second) = (0, 1);
+    assert_eq!(web(true), [MeshFault::OppositeNormals { first, second }]);
+}

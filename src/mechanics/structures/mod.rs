@@ -26,7 +26,7 @@ pub mod quality;
 mod reactions;
 pub mod refined;
 pub mod resultants;
-mod sheets;
+pub mod sheets;
 pub mod shell;
 pub mod state;
 pub mod statics;

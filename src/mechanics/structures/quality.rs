@@ -1,9 +1,11 @@
 //! Faults of a mesh: loose nodes, inverted or warped elements, mid nodes out of place.
 
 use super::mesh::{Edge, Mesh, shell_edges};
+use super::sheets::fold_angle;
 use super::shell::basis::Basis;
 use super::shell::{ShellKind, ShellNodes};
 use crate::math::Vec3;
+use std::collections::HashMap;
 
 /// A fault of a mesh, with the number of the element or node.
 #[derive(Clone, Debug, PartialEq, thiserror::Error)]
@@ -142,6 +144,7 @@ pub fn faults(mesh: &Mesh, nodes: &[Vec3<f64>]) -> Vec<MeshFault> {
         for (shell, element) in mesh.shells.iter().enumerate() {
             all.extend(shape(shell, element, nodes));
         }
+        all.extend(opposite_sheets(mesh, nodes));
         for (beam, element) in mesh.beams.iter().enumerate() {
             all.extend(beam_shape(beam, &element.map(|k| nodes[k])));
         }
@@ -179,40 +182,74 @@ fn connectivity(mesh: &Mesh) -> Vec<MeshFault> {
     all
 }
 
-/// Edges through which two elements run in the same direction.
-fn opposite_normals(mesh: &Mesh) -> Vec<MeshFault> {
-    // An element's boundary runs along its edges in turn; its neighbour runs through the same edge backwards.
-    let mut seen: std::collections::HashMap<Edge, Vec<usize>> = Default::default();
+/// The elements at each edge with the direction in which it is written. An element's boundary runs along its edges in turn,
+/// and its neighbour runs through the same edge backwards.
+fn elements_at_edges(mesh: &Mesh) -> HashMap<Edge, Vec<usize>> {
+    let mut all: HashMap<Edge, Vec<usize>> = HashMap::new();
     for (shell, element) in mesh.shells.iter().enumerate() {
         for (k, mut nodes) in shell_edges(element).into_iter().enumerate() {
             if k >= 2 {
                 nodes.reverse();
             }
-            seen.entry(nodes).or_default().push(shell);
+            all.entry(nodes).or_default().push(shell);
         }
     }
-    let mut all = Vec::new();
-    for (edge, shells) in &seen {
-        let mut backwards = *edge;
-        backwards.reverse();
-        // Where three sheets meet, some pair must agree in direction.
-        let others = seen.get(&backwards).map_or(0, Vec::len);
-        if let (&[first, second], 0) = (shells.as_slice(), others) {
-            all.push(MeshFault::OppositeNormals { first, second });
-        }
-    }
-    all.sort_by_key(|fault| match fault {
-        MeshFault::OppositeNormals { first, second } => (*first, *second),
-        _ => (0, 0),
-    });
     all
 }
 
-fn shape(shell: usize, element: &ShellNodes, nodes: &[Vec3<f64>]) -> Option<MeshFault> {
-    let (kind, x) = (
-        ShellKind::of(element),
-        element.gather(Vec3::zeros(), |node| nodes[node]),
-    );
+fn backwards(edge: &Edge) -> Edge {
+    let mut out = *edge;
+    out.reverse();
+    out
+}
+
+/// Edges of two elements that both run through in the same direction.
+fn opposite_normals(mesh: &Mesh) -> Vec<MeshFault> {
+    let seen = elements_at_edges(mesh);
+    let opposite = |(edge, shells): (&Edge, &Vec<usize>)| {
+        let others = seen.get(&backwards(edge)).map_or(0, Vec::len);
+        match (shells.as_slice(), others) {
+            (&[first, second], 0) => Some([first, second]),
+            _ => None,
+        }
+    };
+    in_order(seen.iter().filter_map(opposite).collect())
+}
+
+/// Elements that meet others at an edge, continue each other smoothly there, and run through it in the same direction.
+fn opposite_sheets(mesh: &Mesh, nodes: &[Vec3<f64>]) -> Vec<MeshFault> {
+    let seen = elements_at_edges(mesh);
+    let normal = |shell: usize| normals(&mesh.shells[shell], nodes).0.0.normalize();
+    let mut all = Vec::new();
+    for (edge, shells) in &seen {
+        let others = seen.get(&backwards(edge)).map_or(0, Vec::len);
+        if shells.len() < 2 || shells.len() + others < 3 {
+            continue;
+        }
+        for (k, &first) in shells.iter().enumerate() {
+            for &second in &shells[k + 1..] {
+                let fold = fold_angle(ShellKind::of(&mesh.shells[first]));
+                if normal(first).dot(&normal(second)) < -fold.cos() {
+                    all.push([first.min(second), first.max(second)]);
+                }
+            }
+        }
+    }
+    in_order(all)
+}
+
+fn in_order(mut pairs: Vec<[usize; 2]>) -> Vec<MeshFault> {
+    pairs.sort_unstable();
+    let fault = |[first, second]: [usize; 2]| MeshFault::OppositeNormals { first, second };
+    pairs.into_iter().map(fault).collect()
+}
+
+/// A normal of an element, not of unit length, and the lengths of its tangents multiplied.
+type Normal = (Vec3<f64>, f64);
+
+/// The normals of an element in its middle and at its nodes.
+fn normals(element: &ShellNodes, nodes: &[Vec3<f64>]) -> (Normal, Vec<Normal>) {
+    let x = element.gather(Vec3::zeros(), |node| nodes[node]);
     let normal = |basis: &Basis| {
         let along = |by| -> Vec3<f64> {
             let terms = x.iter().zip(by);
@@ -221,11 +258,29 @@ fn shape(shell: usize, element: &ShellNodes, nodes: &[Vec3<f64>]) -> Option<Mesh
         let [r, s] = basis.by.each_ref().map(along);
         (r.cross(&s), r.norm() * s.norm())
     };
-    let tables = kind.tables();
-    let (centre, size) = normal(&tables.middle);
+    let tables = ShellKind::of(element).tables();
+    (
+        normal(&tables.middle),
+        tables.nodes.iter().map(normal).collect(),
+    )
+}
+
+/// The shell within which the normal turns most from that of its middle, and by how much \[rad\]. The mesh has no faults.
+pub fn most_turned(mesh: &Mesh, nodes: &[Vec3<f64>]) -> Option<(usize, f64)> {
+    let turn = |element: &ShellNodes| {
+        let ((centre, _), others) = normals(element, nodes);
+        let angles = others.iter().map(|(n, _)| n.angle(&centre));
+        angles.fold(0.0, f64::max)
+    };
+    let all = mesh.shells.iter().map(turn).enumerate();
+    all.max_by(|a, b| a.1.total_cmp(&b.1))
+}
+
+fn shape(shell: usize, element: &ShellNodes, nodes: &[Vec3<f64>]) -> Option<MeshFault> {
+    let kind = ShellKind::of(element);
+    let ((centre, size), others) = normals(element, nodes);
     let flat = centre.norm() <= 1e-6 * size || size == 0.0;
-    for (local, basis) in tables.nodes.iter().enumerate() {
-        let (n, size) = normal(basis);
+    for (local, (n, size)) in others.into_iter().enumerate() {
         let turned = n.dot(&centre) <= 80.0_f64.to_radians().cos() * n.norm() * centre.norm();
         if flat || turned || n.norm() <= 1e-6 * size {
             return Some(MeshFault::Inverted { shell, local });
@@ -234,6 +289,7 @@ fn shape(shell: usize, element: &ShellNodes, nodes: &[Vec3<f64>]) -> Option<Mesh
     if kind == ShellKind::Mitc4 {
         return None;
     }
+    let x = element.gather(Vec3::zeros(), |node| nodes[node]);
     let rows = [
         [0, 1, 2],
         [3, 4, 5],

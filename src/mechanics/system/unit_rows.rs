@@ -1,7 +1,9 @@
 //! Unit rows of G by their entries: sparse products, the normal equations, and a pivoted Gram–Schmidt process.
 
 use crate::linalg::cholesky::{SparseCholesky, SymmetricPattern, fill_reducing_order};
+use crate::math::slices;
 use nalgebra::{DMatrix, DVector};
+use std::ops::Range;
 
 /// A unit row is dependent if its part across the others is smaller.
 const DEPENDENT: f64 = 1e-11;
@@ -9,6 +11,8 @@ const DEPENDENT: f64 = 1e-11;
 const PREFERRED: f64 = 0.1;
 /// Weight that keeps the normal equations regular, relative to unit rows.
 const REGULAR: f64 = 1e-10;
+/// Rows keep all numbers between their first and last entry once more than one in so many is an entry.
+const FULL: usize = 4;
 
 /// The entries of a row, ascending by column.
 type Entries = Vec<(usize, f64)>;
@@ -106,8 +110,8 @@ impl UnitRows {
     /// Rows in an order in which each is independent of those before, and the others follow: the first whose part across
     /// those before is not small relative to the largest such part, which is told.
     pub fn independent(self) -> Vec<(usize, f64)> {
-        let mut rows = self.rows;
-        let mut sizes: Vec<f64> = rows.iter().map(norm).collect();
+        let mut rows: Vec<Row> = self.rows.into_iter().map(Row::Sparse).collect();
+        let mut sizes: Vec<f64> = rows.iter().map(Row::norm).collect();
         let mut dense = vec![0.0; self.columns];
         let mut order = Vec::new();
         loop {
@@ -118,21 +122,103 @@ impl UnitRows {
             let first = sizes.iter().position(|&x| x >= PREFERRED * largest);
             let Some(first) = first else { return order };
             order.push((first, largest));
-            let pivot = std::mem::take(&mut rows[first]);
-            scatter(&pivot, 1.0 / sizes[first], &mut dense);
+            let pivot = std::mem::replace(&mut rows[first], Row::Sparse(Vec::new()));
+            let own = pivot.columns();
+            pivot.scatter(1.0 / sizes[first], &mut dense);
             sizes[first] = 0.0;
             for (row, size) in rows.iter_mut().zip(&mut sizes) {
                 // Dependent rows and those that have gone count no more.
                 if *size <= DEPENDENT {
                     continue;
                 }
-                let along = dot(row, &dense);
+                let along = row.dot(&dense, &own);
                 if along != 0.0 {
-                    subtract(row, along, (&pivot, &dense));
-                    *size = norm(row);
+                    row.subtract(along, (&pivot, &own), &dense);
+                    *size = row.norm();
                 }
             }
-            scatter(&pivot, 0.0, &mut dense);
+            dense[own].fill(0.0);
+        }
+    }
+}
+
+/// A row while others are subtracted, which fill it.
+enum Row {
+    Sparse(Entries),
+    /// All numbers from a column on.
+    Dense(usize, Vec<f64>),
+}
+
+impl Row {
+    /// The columns between its first and last entry.
+    fn columns(&self) -> Range<usize> {
+        match self {
+            Self::Sparse(own) => match (own.first(), own.last()) {
+                (Some(first), Some(last)) => first.0..last.0 + 1,
+                _ => 0..0,
+            },
+            Self::Dense(first, own) => *first..first + own.len(),
+        }
+    }
+
+    fn norm(&self) -> f64 {
+        match self {
+            Self::Sparse(own) => norm(own),
+            Self::Dense(_, own) => slices::dot(own, own).sqrt(),
+        }
+    }
+
+    /// Sets its places in `dense` to its entries times `scale`.
+    fn scatter(&self, scale: f64, dense: &mut [f64]) {
+        match self {
+            Self::Sparse(own) => scatter(own, scale, dense),
+            Self::Dense(first, own) => {
+                let places = dense[*first..].iter_mut().zip(own);
+                places.for_each(|(to, x)| *to = x * scale);
+            }
+        }
+    }
+
+    /// The product with a vector that is zero beyond some columns.
+    fn dot(&self, dense: &[f64], within: &Range<usize>) -> f64 {
+        match self {
+            Self::Sparse(own) => dot(own, dense),
+            Self::Dense(first, own) => {
+                let (from, to) = (within.start.max(*first), within.end.min(first + own.len()));
+                match from < to {
+                    true => slices::dot(&own[from - first..to - first], &dense[from..to]),
+                    false => 0.0,
+                }
+            }
+        }
+    }
+
+    /// Subtracts `along` times a pivot with these columns, whose entries are in `dense`.
+    fn subtract(&mut self, along: f64, (pivot, within): (&Row, &Range<usize>), dense: &[f64]) {
+        let own = self.columns();
+        let (from, to) = (own.start.min(within.start), own.end.max(within.end));
+        match (&mut *self, pivot) {
+            (Self::Sparse(row), Row::Sparse(pivot))
+                if FULL * (row.len() + pivot.len()) < to - from =>
+            {
+                subtract(row, along, (pivot, dense));
+            }
+            (Self::Dense(first, row), _) if (from, to) == (own.start, own.end) => {
+                let row = &mut row[within.start - *first..within.end - *first];
+                slices::add_scaled(row, -along, &dense[within.clone()]);
+            }
+            _ => {
+                let mut wider = vec![0.0; to - from];
+                match &*self {
+                    Self::Sparse(row) => row.iter().for_each(|&(k, x)| wider[k - from] = x),
+                    Self::Dense(first, row) => {
+                        wider[first - from..][..row.len()].copy_from_slice(row);
+                    }
+                }
+                let part = &mut wider[within.start - from..within.end - from];
+                slices::add_scaled(part, -along, &dense[within.clone()]);
+                *self = Self::Dense(from, wider);
+            }
         }
     }
 }
@@ -214,6 +300,42 @@ mod tests {
             let expected: Vec<usize> = (0..3 * count).filter(|i| i % 3 != 2).collect();
             assert_eq!(kept, expected);
         }
+    }
+
+    /// Rows that fill while others are subtracted are as many as the rank, and the first that are independent.
+    #[test]
+    fn rows_that_fill_are_left_out_alike() {
+        let (count, columns) = (60, 40);
+        let number = |k: usize| ((k * 7919) as f64 * 0.618_033_988_7).fract() - 0.5;
+        let mut rows: Vec<Entries> = (0..count)
+            .map(|i| {
+                let places = [i % columns, (7 * i + 3) % columns, (11 * i + 5) % columns];
+                let mut own: Vec<usize> = places.to_vec();
+                own.sort_unstable();
+                own.dedup();
+                own.iter().map(|&k| (k, number(i * columns + k))).collect()
+            })
+            .collect();
+        // Some follow from their neighbours.
+        for i in (4..count).step_by(5) {
+            let mut sum = vec![0.0; columns];
+            let others = rows[i - 1].iter().chain(&rows[i - 2]);
+            others.for_each(|&(k, x)| sum[k] += x);
+            let entries = sum.into_iter().enumerate();
+            rows[i] = entries.filter(|own| own.1 != 0.0).collect();
+        }
+        let of = |which: &[usize]| {
+            let chosen = which.iter().map(|&i| rows[i].clone()).collect();
+            UnitRows::new(chosen, columns).transposed()
+        };
+        let all: Vec<usize> = (0..count).collect();
+        let kept: Vec<usize> = UnitRows::new(rows.clone(), columns)
+            .independent()
+            .iter()
+            .map(|own| own.0)
+            .collect();
+        assert_eq!(kept.len(), of(&all).rank(1e-9));
+        assert_eq!(of(&kept).rank(1e-9), kept.len());
     }
 
     #[test]

@@ -438,3 +438,105 @@ fn lines_alone_are_beams() {
     let faults = parsed(&file(without, "arm"), &[("a.msh", &text)]).expect_err("no orientation");
     assert!(faults.contains("no \"orientation\" of beams"), "{faults}");
 }
+
+/// A strip of three elements of four nodes, twisted by an angle \[rad\] in all.
+fn twisted(angle: f64) -> String {
+    let mut text = "$MeshFormat\n2.2 0 8\n$EndMeshFormat\n".to_string();
+    text += "$PhysicalNames\n2\n1 1 \"root\"\n2 2 \"strip\"\n$EndPhysicalNames\n$Nodes\n8\n";
+    for k in 0..8 {
+        let (i, side) = (f64::from(k / 2), f64::from(k % 2) - 0.5);
+        let (sine, cosine) = (angle * i / 3.0).sin_cos();
+        let _ = writeln!(text, "{} {i} {} {}", k + 1, side * cosine, side * sine);
+    }
+    text += "$EndNodes\n$Elements\n4\n4 1 2 1 1 1 2\n";
+    for i in 0..3 {
+        let first = 2 * i + 1;
+        let _ = writeln!(
+            text,
+            "{} 3 2 2 1 {first} {} {} {}",
+            i + 1,
+            first + 2,
+            first + 3,
+            first + 1
+        );
+    }
+    text + "$EndElements\n"
+}
+
+#[test]
+fn warped_elements_are_told() {
+    for (angle, is_told) in [(0.3, false), (1.5, true)] {
+        let mut document = at_rest(json!({"gmsh": {"file": "strip.msh", "unit": "m"}}));
+        document["structures"]["plate"]["supports"] = json!({"edge": {"nodes": "root"}});
+        for key in ["load_cases", "functions", "variables"] {
+            document[key] = json!({});
+        }
+        document["structures"]["plate"]["masses"] = json!({});
+        document["structures"]["plate"]["element"] = json!("mitc4");
+        let read = parsed(&document, &[("strip.msh", &twisted(angle))]).expect("a problem");
+        let told = read.notes_of_input().join("\n");
+        assert_eq!(told.contains("is warped"), is_told, "{angle}: {told}");
+    }
+}
+
+/// A base of two elements and a web on their common edge, each `turned_over` or not.
+fn tee(turned_over: [bool; 3]) -> String {
+    let places = [
+        [-1, 0, 1],
+        [-1, 10, 1],
+        [0, 0, 0],
+        [0, 10, 0],
+        [1, 0, 0],
+        [1, 10, 0],
+        [0, 0, 10],
+        [0, 10, 10],
+    ];
+    let mut text = "$MeshFormat\n2.2 0 8\n$EndMeshFormat\n".to_string();
+    text += "$PhysicalNames\n3\n1 1 \"root\"\n1 2 \"tip\"\n2 3 \"tee\"\n$EndPhysicalNames\n";
+    text += "$Nodes\n8\n";
+    for (k, [x, y, z]) in places.iter().enumerate() {
+        let _ = writeln!(text, "{} {} {}e-1 {}e-1", k + 1, x, y, z);
+    }
+    text += "$EndNodes\n$Elements\n5\n1 1 2 1 1 1 2\n2 1 2 2 2 7 8\n";
+    let elements = [[1, 3, 4, 2], [3, 5, 6, 4], [3, 4, 8, 7]];
+    for (k, (mut nodes, over)) in elements.into_iter().zip(turned_over).enumerate() {
+        if over {
+            nodes.reverse();
+        }
+        let nodes = nodes.map(|k| k.to_string()).join(" ");
+        let _ = writeln!(text, "{} 3 2 3 1 {nodes}", k + 3);
+    }
+    text + "$EndElements\n"
+}
+
+/// Where a web meets a base, both halves of the base are one sheet, however their elements are wound.
+#[test]
+fn windings_do_not_matter_where_three_sheets_meet() {
+    let mut document = at_rest(json!({"gmsh": {"file": "tee.msh", "unit": "m"}}));
+    let plate = &mut document["structures"]["plate"];
+    plate["supports"] = json!({"edge": {"nodes": "root"}});
+    plate["masses"] = json!({});
+    document["load_cases"] = json!({"a": {"f": {"edge": {"edges": "tip", "force": [1, 2, 3]}}}});
+    document["functions"] = json!({
+        "x": {"displacement": {"case": "a", "nodes": "tip", "direction": [1, 0, 0]}},
+        "y": {"displacement": {"case": "a", "nodes": "tip", "direction": [0, 1, 0]}},
+        "z": {"displacement": {"case": "a", "nodes": "tip", "direction": [0, 0, 1]}}
+    });
+    let of = |turned_over: [bool; 3]| {
+        let read = parsed(&document, &[("tee.msh", &tee(turned_over))]);
+        values(&read.unwrap_or_else(|faults| panic!("{faults}")))
+    };
+    let expected = of([false; 3]);
+    for turned_over in [
+        [true, false, false],
+        [false, true, true],
+        [false, false, true],
+    ] {
+        assert_close(
+            &of(turned_over),
+            &expected,
+            1e-10,
+            &format!("{turned_over:?}"),
+        );
+    }
+}

@@ -16,8 +16,9 @@ use crate::math::Complex64;
 use crate::system::failure::AssemblyFailure;
 use nalgebra::DMatrix;
 
-/// Inverse iterations.
+/// Inverse iterations, and steps that refine a single pair.
 const ITERATIONS: usize = 8;
+const REFINEMENTS: usize = 2;
 /// Distance of σ from the eigenvalue, relative to it.
 const ASIDE: f64 = 1e-9;
 /// Relative distance of eigenvalues that form a cluster.
@@ -87,6 +88,25 @@ fn orthonormalise(all: &mut [[Vector; 2]]) -> Option<()> {
     Some(())
 }
 
+/// Q(s) x = (K + s D + s² M) x, or its transpose.
+fn whole(matrices: &Matrices, x: &[Complex64], s: Complex64, transposed: bool) -> Vector {
+    let mut out = product(&matrices.stiffness, x, transposed);
+    let damped = product(&matrices.damping, x, transposed);
+    let heavy = product(&matrices.mass, x, transposed);
+    for (out, (d, m)) in out.iter_mut().zip(damped.iter().zip(&heavy)) {
+        *out += s * (d + s * m);
+    }
+    out
+}
+
+/// (D + 2 s M) x, or its transpose.
+fn slope(matrices: &Matrices, x: &[Complex64], s: Complex64, transposed: bool) -> Vector {
+    let mut out = product(&matrices.damping, x, transposed);
+    let heavy = product(&matrices.mass, x, transposed);
+    (out.iter_mut().zip(&heavy)).for_each(|(a, b)| *a += s * 2.0 * b);
+    out
+}
+
 struct Shifted<'a> {
     matrices: &'a Matrices,
     factors: SparseLu<Complex64>,
@@ -96,13 +116,39 @@ struct Shifted<'a> {
 impl Shifted<'_> {
     /// (D + 2 σ M) x, or its transpose.
     fn slope(&self, x: &[Complex64], transposed: bool) -> Vector {
-        let mut out = product(&self.matrices.damping, x, transposed);
-        let heavy = product(&self.matrices.mass, x, transposed);
-        let twice = self.shift * 2.0;
-        out.iter_mut()
-            .zip(&heavy)
-            .for_each(|(a, b)| *a += twice * b);
-        out
+        slope(self.matrices, x, self.shift, transposed)
+    }
+
+    /// Refines a single pair by its residuals Q(s) r and Qᵀ(s) l: iterations leave round-off of the largest entries in
+    /// all of a vector, and the growth of a mode with little damping is a small part of its rate.
+    fn refine(&mut self, pair: &mut Cluster) {
+        let ([s], [right], [left]) = (
+            &mut pair.values[..],
+            &mut pair.right[..],
+            &mut pair.left[..],
+        ) else {
+            return;
+        };
+        for _ in 0..REFINEMENTS {
+            for (x, transposed) in [(&mut *right, false), (&mut *left, true)] {
+                let mut change = whole(self.matrices, x, *s, transposed);
+                match transposed {
+                    false => self.factors.solve(&mut change),
+                    true => self.factors.solve_transposed(&mut change),
+                }
+                self.matrices.leave_out(&mut change);
+                let along = |y: &[Complex64]| -> Complex64 {
+                    x.iter().zip(y).map(|(x, y)| x.conj() * y).sum()
+                };
+                let part = along(&change) / along(x);
+                for (x, change) in x.iter_mut().zip(&change) {
+                    *x += part * *x - change;
+                }
+            }
+            let rate = dot(left, &slope(self.matrices, right, *s, false));
+            *s -= dot(left, &whole(self.matrices, right, *s, false)) / rate;
+            left.iter_mut().for_each(|x| *x /= rate);
+        }
     }
 
     fn right(&mut self, [y, w]: &[Vector; 2]) -> [Vector; 2] {
@@ -189,7 +235,9 @@ fn cluster(matrices: &Matrices, values: &[Complex64]) -> Option<Cluster> {
             *l = shifted.left(own).1;
         }
     }
-    finish(&shifted, (rights, solved))
+    let mut found = finish(&shifted, (rights, solved))?;
+    shifted.refine(&mut found);
+    Some(found)
 }
 
 /// The eigenvalues in the spaces of right and left vectors.
@@ -210,19 +258,12 @@ fn finish(
     };
     let heavy = between(&|x| product(&matrices.mass, x, false));
     let slope = between(&|x| shifted.slope(x, false));
-    let whole = between(&|x| {
-        let stiff = product(&matrices.stiffness, x, false);
-        let damped = product(&matrices.damping, x, false);
-        let heavy = product(&matrices.mass, x, false);
-        let s = shifted.shift;
-        let parts = stiff.iter().zip(&damped).zip(&heavy);
-        parts.map(|((k, d), m)| k + s * (d + s * m)).collect()
-    });
+    let rest = between(&|x| whole(matrices, x, shifted.shift, false));
     // lᵀ (Q + δ Q' + δ² M) y = 0 with a small δ.
     let inverse = slope.clone().try_inverse()?;
-    let mut change = -(&inverse * &whole);
+    let mut change = -(&inverse * &rest);
     for _ in 0..3 {
-        change = -(&inverse * (&whole + &heavy * &change * &change));
+        change = -(&inverse * (&rest + &heavy * &change * &change));
     }
     let values: Vec<Complex64> = match p {
         1 => vec![shifted.shift + change[(0, 0)]],

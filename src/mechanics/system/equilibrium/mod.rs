@@ -42,7 +42,7 @@ mod whirl;
 
 use super::bodies::{positions_of, velocities_of};
 use super::failure::AssemblyFailure;
-use super::nearest::nearest;
+use super::nearest::{FirstOrder, Placed};
 use super::numbering::Numbering;
 use super::placement::{guess, reach};
 use super::reduce;
@@ -109,7 +109,8 @@ pub struct KnownStarts(Arc<Mutex<Known>>);
 #[derive(Debug, Default)]
 struct Known {
     states: Vec<(Vec<f64>, State<f64>)>,
-    factors: Option<(Vec<f64>, Factors)>,
+    factors: Vec<(Vec<f64>, Factors)>,
+    placed: Vec<(Vec<f64>, Placed)>,
     modes: Option<(Vec<f64>, Option<Vec<Mode>>)>,
     spectra: Vec<(Vec<f64>, Spectrum)>,
     critical: Vec<(Vec<f64>, Excited)>,
@@ -148,11 +149,26 @@ impl KnownStarts {
         }
     }
 
-    /// Takes the factors of these numbers. Another thread makes its own.
+    /// Takes factors of these numbers. Each thread has its own.
     fn take_factors(&self, numbers: &[f64]) -> Option<Factors> {
-        let mut known = self.0.lock().ok()?;
-        let kept = known.factors.take_if(|(own, _)| own == numbers);
-        kept.map(|(_, factors)| factors)
+        take(&mut self.0.lock().ok()?.factors, numbers)
+    }
+
+    fn keep_factors(&self, numbers: Vec<f64>, factors: Factors) {
+        if let Ok(mut known) = self.0.lock() {
+            keep(&mut known.factors, numbers, factors);
+        }
+    }
+
+    /// Takes the consistent state at the placement that has these numbers.
+    fn take_placed(&self, numbers: &[f64]) -> Option<Placed> {
+        take(&mut self.0.lock().ok()?.placed, numbers)
+    }
+
+    fn keep_placed(&self, numbers: &[f64], placed: Placed) {
+        if let Ok(mut known) = self.0.lock() {
+            keep(&mut known.placed, numbers.to_vec(), placed);
+        }
     }
 
     fn free(&self, numbers: &[f64]) -> Option<Vec<FreeMotion>> {
@@ -166,11 +182,19 @@ impl KnownStarts {
             known.free = Some((numbers.to_vec(), free.to_vec()));
         }
     }
+}
 
-    fn keep_factors(&self, numbers: Vec<f64>, factors: Factors) {
-        if let Ok(mut known) = self.0.lock() {
-            known.factors = Some((numbers, factors));
-        }
+/// Takes one of those of these numbers.
+fn take<T>(all: &mut Vec<(Vec<f64>, T)>, numbers: &[f64]) -> Option<T> {
+    let at = all.iter().position(|(own, _)| own == numbers)?;
+    Some(all.swap_remove(at).1)
+}
+
+/// Keeps one of these numbers for each thread, and no others.
+fn keep<T>(all: &mut Vec<(Vec<f64>, T)>, numbers: Vec<f64>, own: T) {
+    all.retain(|(others, _)| *others == numbers);
+    if all.len() < rayon::current_num_threads() {
+        all.push((numbers, own));
     }
 }
 
@@ -318,8 +342,6 @@ fn with_solution<S: Scalar, T>(
     known: &KnownStarts,
     of: impl FnOnce(&Given<S>, &Solver, &State<f64>) -> Result<T, AssemblyFailure>,
 ) -> Result<T, AssemblyFailure> {
-    let placed = nearest(own)?.q;
-    let given = Given::of(own, numbering, (placed, turning));
     let mut numbers = vec![numbering.unknowns() as f64, numbering.constraints() as f64];
     let mut noted = |x: S| {
         numbers.push(x.re());
@@ -330,6 +352,19 @@ fn with_solution<S: Scalar, T>(
         turning.map(&mut noted);
     }
     redundancy::leave_out(&mut real);
+    let mut placed = match known.take_placed(&numbers) {
+        Some(placed) => placed,
+        None => Placed::of(&real, numbering)?,
+    };
+    let mut nearest = FirstOrder {
+        model: own,
+        real: &real,
+        numbering,
+        placed: &mut placed,
+    };
+    let q = nearest.positions()?;
+    known.keep_placed(&numbers, placed);
+    let given = Given::of(own, numbering, (q, turning));
     let left_out = RedundantRows::of(&real, numbering);
     let start = given.map(&mut |x| x.re());
     let layout = Layout::new(&real, numbering, &left_out, (&start, sought));

@@ -37,6 +37,10 @@ const SAME: f64 = 1e-9;
 /// σ is raised to that of the lowest mode if it is below this part of it.
 const SMALL_SHIFT: f64 = 1e-2;
 
+/// Steps that refine modes, and the largest change of one with yᵀ M y = 1.
+const REFINEMENTS: usize = 2;
+const REFINED: f64 = 1e-6;
+
 /// First number of modes of an aggregate.
 const FIRST: usize = 6;
 
@@ -220,6 +224,10 @@ impl Solver<'_> {
             space.truncate(allowed);
             let there = space.len();
             if there < if all { wanted.count.max(1) } else { count } {
+                // Lanczos converges for symmetric matrices.
+                if !all && !self.is_symmetric(&mut softened, found) {
+                    return Ok(None);
+                }
                 return none(match all {
                     true => format!(
                         "mode {} is asked for, and there are {there}",
@@ -231,6 +239,7 @@ impl Solver<'_> {
             let Some(mut modes) = self.ritz(&mut softened, found, space)? else {
                 return Ok(None);
             };
+            self.refine(&mut softened, found, (&free, &mut modes));
             modes.truncate(count);
             // Solutions have round-off along free motions, which a small σ magnifies.
             let lowest = modes.first().map_or(0.0, |own| own.square);
@@ -254,6 +263,23 @@ impl Solver<'_> {
             self.factorise_at(softened.factors, found)?;
         }
         Ok(Some(out))
+    }
+
+    /// Whether K is symmetric, by two motions of low frequencies.
+    fn is_symmetric(&self, softened: &mut Softened, found: &State<f64>) -> bool {
+        let along = self.layout.along(self.model, self.given, found);
+        let n = self.layout.numbering.unknowns();
+        let [a, b] = [2.3, 3.7].map(|seed: f64| {
+            let any = |i: usize| (seed * (1.0 + i as f64).sqrt()).fract() - 0.5;
+            let mut y: Vec<f64> = (0..n).map(any).collect();
+            y.resize(self.layout.order(), 0.0);
+            softened.factors.solve(&mut y);
+            let stiff = along.product(&y);
+            [y, stiff]
+        });
+        let work = |x: &[Vec<f64>; 2], y: &[Vec<f64>; 2]| dot(&x[0][..n], &y[1][..n]);
+        let size = (work(&a, &a) * work(&b, &b)).abs().sqrt();
+        (work(&a, &b) - work(&b, &a)).abs() <= ASYMMETRIC * size
     }
 
     /// The modes in the space of some motions; `None` if K is not symmetric.
@@ -305,6 +331,55 @@ impl Solver<'_> {
             }
         };
         Ok(Some(squares.iter().enumerate().map(one).collect()))
+    }
+
+    /// Refines modes by their residuals r = K y + Gᵀ μ − ω² M y. Lanczos and Ritz leave round-off of the extreme eigenvalues
+    /// in all vectors. The error along another mode is y_jᵀ r / (ω_j² − ω²); the rest of it falls by (K + σ M̃)⁻¹ r.
+    /// What it adds along free motions is round-off, and a large change is no refinement.
+    fn refine(
+        &self,
+        softened: &mut Softened,
+        found: &State<f64>,
+        (free, modes): (&Basis, &mut [Mode]),
+    ) {
+        let (layout, model) = (self.layout, self.model);
+        let n = layout.numbering.unknowns();
+        let along = layout.along(model, self.given, found);
+        for _ in 0..REFINEMENTS {
+            let (mut heavy, mut rests) = (Vec::new(), Vec::new());
+            for mode in &mut *modes {
+                let own = layout.mass_product(model, softened.motions, &mode.shape[..n]);
+                let mut rest = along.product(&mode.shape);
+                mode.square = dot(&mode.shape[..n], &rest[..n]) / dot(&mode.shape[..n], &own);
+                add_scaled(&mut rest[..n], -mode.square, &own);
+                heavy.push(own);
+                rests.push(rest);
+            }
+            let known = modes.to_vec();
+            for (mode, rest) in modes.iter_mut().zip(rests) {
+                let mut change = rest.clone();
+                softened.factors.solve(&mut change);
+                for (other, heavy) in known.iter().zip(&heavy) {
+                    let apart = other.square - mode.square;
+                    let along = match apart.abs() > REPEATED * mode.square.abs() {
+                        true => dot(&other.shape[..n], &rest[..n]) / apart,
+                        false => 0.0,
+                    };
+                    let there = dot(heavy, &change[..n]);
+                    add_scaled(&mut change, along - there, &other.shape);
+                }
+                free.orthogonalise(&mut change[..n]);
+                let moved = layout.mass_product(model, softened.motions, &change[..n]);
+                let size = dot(&moved, &change[..n]).max(0.0).sqrt();
+                if size.is_nan() || size > REFINED {
+                    continue;
+                }
+                add_scaled(&mut mode.shape, -1.0, &change);
+                let heavy = layout.mass_product(model, softened.motions, &mode.shape[..n]);
+                let size = dot(&mode.shape[..n], &heavy).sqrt();
+                mode.shape.iter_mut().for_each(|x| *x /= size);
+            }
+        }
     }
 }
 
