@@ -23,7 +23,7 @@ use rayon::prelude::*;
 /// A derivative below this part of its terms has lost digits by cancellation.
 const SMALL: f64 = 1e-3;
 /// Relative noise of a derivative up to which it counts as exact.
-const LITTLE: f64 = 1e-6;
+const LITTLE: f64 = 1e-8;
 
 /// One derivative, computed twice.
 #[derive(Clone, Debug, PartialEq)]
@@ -67,7 +67,8 @@ impl CheckedDerivative {
 
     /// Whether its two values differ by no more than what Newton's method leaves, and that is little.
     pub fn differs_by_noise(&self) -> bool {
-        self.relative_difference() <= self.noise() && self.noise() <= LITTLE
+        let noise = self.noise();
+        self.complex_step != 0.0 && self.relative_difference() <= noise && noise <= LITTLE
     }
 
     fn round_off(&self) -> f64 {
@@ -383,6 +384,11 @@ mod tests {
         };
         assert!(noisy(1.0 + 3e-10).differs_by_noise());
         assert!(!noisy(1.0 + 1e-10).differs_by_noise() && !noisy(1.1).differs_by_noise());
+        let of_nothing = CheckedDerivative {
+            in_use: 1e-9,
+            ..pair(1e-9 + 1e-18, 0.0)
+        };
+        assert!(!of_nothing.differs_by_noise());
         let small = pair(1e-12 + 5e-15, 1e-12);
         assert!(!small.is_round_off() && small.differs_by_round_off());
         assert!(small.relative_difference() > 1e-3);

@@ -13,15 +13,18 @@ use crate::integrate::{
 };
 use crate::math::scalar::COMPLEX_STEP;
 use crate::math::soft_max::Smoothed;
-use crate::math::{Complex64, Dual, Parameters};
+use crate::math::{Complex64, Dual, Parameters, Team};
 use crate::model::flexible::FlexibleBody;
-use crate::model::{JointFrame, RigidBody};
+use crate::model::{Form, JointFrame, RigidBody};
 use crate::problem::{Composition, EndCotangent, Focus, Partials, Problem};
 use crate::system::equilibrium::FrozenMode;
 use crate::system::flexible;
 use rayon::prelude::*;
 use std::borrow::Cow;
 use std::sync::Arc;
+
+/// Derivatives by variables that are computed at once.
+const SIDE_BY_SIDE: usize = 8;
 
 /// A norm is zero below this part of its size in the scene: to round-off, and for warnings.
 const ZERO: f64 = 64.0 * f64::EPSILON;
@@ -404,9 +407,12 @@ impl Evaluated {
             };
             Ok(rows.map(one).collect())
         };
-        // Variables are divided among threads and ranks. One that fails does so everywhere.
+        // Variables are divided among ranks and threads, of which each may have factors of its own. One that fails is computed
+        // again by all, for its error.
         let team = flexible::team(&self.scene.model);
-        let share = team.share(0..self.x.len()).into_par_iter();
+        let share = team.share(0..self.x.len());
+        let piece = share.len().div_ceil(SIDE_BY_SIDE);
+        let share = share.into_par_iter().with_min_len(piece.max(1));
         let own: Vec<Option<Vec<[f64; 2]>>> = share.map(|i| along(i).ok()).collect();
         let mut all = vec![Vec::with_capacity(self.x.len()); count];
         for (i, of_variable) in team.gather(own).into_iter().enumerate() {
@@ -449,7 +455,13 @@ fn moved_scene(problem: &Problem, x: &[f64], i: usize) -> Result<Scene<Dual>, In
         .enumerate()
         .map(|(j, &value)| Dual::new(value, if i == j { 1.0 } else { 0.0 }))
         .collect();
-    let scene = problem.scene(&x);
+    let mut scene = problem.scene(&x);
     scene.admit_start()?;
+    // Each rank has its own variables, so nothing else is exchanged meanwhile.
+    for body in &mut scene.model.flexible {
+        if let Form::Finite(own) = &mut body.form {
+            own.team = Team::default();
+        }
+    }
     Ok(scene)
 }

@@ -13,10 +13,13 @@ use crate::schema::Document;
 use crate::schema::structures::{Mesh as Written, ReadMesh, Structure};
 use crate::structures::mesh::{Edge, Mesh, shell_edges};
 use crate::structures::quality::faults;
-use crate::structures::sheets::fold_angle;
 use crate::structures::shell::{ShellKind, ShellNodes};
 use std::collections::{BTreeMap, HashMap, HashSet};
 use std::sync::Arc;
+
+/// Fold at an edge of three sheets up to which one of them continues another \[rad\]. A smaller one than of a smooth sheet
+/// would leave some of its elements as they are.
+const CONTINUED: f64 = 0.8;
 
 /// The place in Gmsh's order of each of our nodes of a shell.
 fn order(kind: ShellKind) -> &'static [usize] {
@@ -113,7 +116,7 @@ fn mesh(mut msh: Msh, (kind, metres): (ShellKind, f64)) -> Result<ReadMesh, Text
         _ => complete(&mut elements, &mut msh.places)?,
     }
     if most == 2 {
-        align(&mut elements, (&msh.places, kind));
+        align(&mut elements, &msh.places);
     }
     let mut read = ReadMesh::default();
     let (index, of_file) = assemble(&elements, (&msh.places, metres), (most, kind), &mut read);
@@ -236,7 +239,7 @@ fn complete(elements: &mut [Element], places: &mut Vec<Vec3<f64>>) -> Result<(),
 
 /// Turns quadrangles over so that neighbours agree on the side to which their normals point: the first of the file
 /// of each connected part stays.
-fn align(elements: &mut [Element], (places, kind): (&[Vec3<f64>], ShellKind)) {
+fn align(elements: &mut [Element], places: &[Vec3<f64>]) {
     let shells: Vec<usize> = (0..elements.len())
         .filter(|&e| elements[e].dimension() == 2)
         .collect();
@@ -257,56 +260,41 @@ fn align(elements: &mut [Element], (places, kind): (&[Vec3<f64>], ShellKind)) {
         while let Some(e) = front.pop() {
             for edge in edges(&elements[e].nodes) {
                 let others = at_edge[&key(edge)].iter().copied().filter(|&k| k != e);
-                let others: Vec<usize> = others.collect();
-                let other = match others[..] {
-                    [] => continue,
-                    [other] => other,
-                    // Of three sheets at one edge two may continue each other.
-                    _ => match smoothest(elements, places, (e, &others), fold_angle(kind)) {
-                        Some(other) => other,
-                        None => continue,
-                    },
-                };
-                if !seen.insert(other) {
-                    continue;
+                let mut others: Vec<usize> = others.collect();
+                // Of three sheets at one edge, those are turned that continue each other.
+                if others.len() > 1 {
+                    others.retain(|&k| continues(elements, places, (e, k), edge));
                 }
-                if edges(&elements[other].nodes).contains(&edge) {
-                    turn_over(&mut elements[other].nodes);
+                for other in others {
+                    if !seen.insert(other) {
+                        continue;
+                    }
+                    if edges(&elements[other].nodes).contains(&edge) {
+                        turn_over(&mut elements[other].nodes);
+                    }
+                    front.push(other);
                 }
-                front.push(other);
             }
         }
     }
 }
 
-/// The one of the others at an edge that continues an element with the smallest fold, if that is below an angle.
-fn smoothest(
+/// Whether one of two elements at an edge continues the other beyond it, with a fold that is not large.
+fn continues(
     elements: &[Element],
     places: &[Vec3<f64>],
-    (own, others): (usize, &[usize]),
-    fold: f64,
-) -> Option<usize> {
-    let shape = |e: usize| {
-        let [a, b, c, d] = [0, 1, 2, 3].map(|k| places[elements[e].nodes[k]]);
-        ((c - a).cross(&(d - b)).normalize(), (a + b + c + d) / 4.0)
+    (a, b): (usize, usize),
+    edge: [usize; 2],
+) -> bool {
+    let [from, to] = edge.map(|k| places[k]);
+    let inwards = |e: usize| {
+        let corners = elements[e].nodes[..4].iter();
+        let off = corners.filter(|k| !edge.contains(k));
+        let beyond = off.map(|&k| places[k]).sum::<Vec3<f64>>() / 2.0 - (from + to) / 2.0;
+        let along = (to - from).normalize();
+        (beyond - along * along.dot(&beyond)).normalize()
     };
-    let shared = |e: usize| {
-        let nodes = elements[own].nodes[..4].iter();
-        nodes
-            .copied()
-            .filter(move |k| elements[e].nodes[..4].contains(k))
-    };
-    let (normal, middle) = shape(own);
-    let continued = |&e: &usize| {
-        let (other, beyond) = shape(e);
-        let edge: Vec<Vec3<f64>> = shared(e).map(|k| places[k]).collect();
-        let on = edge.iter().sum::<Vec3<f64>>() / edge.len() as f64;
-        let fold = normal.dot(&other).abs();
-        ((middle - on).dot(&(beyond - on)) < 0.0).then_some((e, fold))
-    };
-    let all = others.iter().filter_map(continued);
-    let best = all.max_by(|a, b| a.1.total_cmp(&b.1))?;
-    (best.1 > fold.cos()).then_some(best.0)
+    inwards(a).dot(&inwards(b)) < -CONTINUED.cos()
 }
 
 /// Makes the shells or beams of the elements of the dimension `most`. Gives the number of each node of the file in the

@@ -93,8 +93,8 @@ fn turned_elements(document: &Document) -> impl Iterator<Item = String> {
         let [x, y, z] = element.iter().map(|&k| part.nodes[k]).sum::<Vec3<f64>>().unscale(count).into();
         (turn > most).then(|| {
             format!(
-                "{what}: the element at ({x:.4}, {y:.4}, {z:.4}) m is {word}: its normal turns by {:.0} degrees from its middle to \
-                 a node; from {:.0} on such elements err, and smaller ones err less",
+                "{what}: the element at ({x:.4}, {y:.4}, {z:.4}) m is {word}: its normal turns by {:.1} degrees from its middle to \
+                 a node; from {:.1} on such elements err, and smaller ones err less",
                 turn.to_degrees(),
                 most.to_degrees()
             )

@@ -219,7 +219,16 @@ fn opposite_normals(mesh: &Mesh) -> Vec<MeshFault> {
 /// Elements that meet others at an edge, continue each other smoothly there, and run through it in the same direction.
 fn opposite_sheets(mesh: &Mesh, nodes: &[Vec3<f64>]) -> Vec<MeshFault> {
     let seen = elements_at_edges(mesh);
-    let normal = |shell: usize| normals(&mesh.shells[shell], nodes).0.0.normalize();
+    // At the edge, where directors are.
+    let normal = |shell: usize, edge: &Edge| -> Vec3<f64> {
+        let element = &mesh.shells[shell];
+        let at_nodes = element.iter().zip(normals(element, nodes).1);
+        let at_edge = at_nodes.filter(|(node, _)| edge.contains(node));
+        at_edge
+            .map(|(_, (n, _))| n.normalize())
+            .sum::<Vec3<f64>>()
+            .normalize()
+    };
     let mut all = Vec::new();
     for (edge, shells) in &seen {
         let others = seen.get(&backwards(edge)).map_or(0, Vec::len);
@@ -229,12 +238,14 @@ fn opposite_sheets(mesh: &Mesh, nodes: &[Vec3<f64>]) -> Vec<MeshFault> {
         for (k, &first) in shells.iter().enumerate() {
             for &second in &shells[k + 1..] {
                 let fold = fold_angle(ShellKind::of(&mesh.shells[first]));
-                if normal(first).dot(&normal(second)) < -fold.cos() {
+                if normal(first, edge).dot(&normal(second, edge)) < -fold.cos() {
                     all.push([first.min(second), first.max(second)]);
                 }
             }
         }
     }
+    all.sort_unstable();
+    all.dedup();
     in_order(all)
 }
 
@@ -265,7 +276,7 @@ fn normals(element: &ShellNodes, nodes: &[Vec3<f64>]) -> (Normal, Vec<Normal>) {
     )
 }
 
-/// The shell within which the normal turns most from that of its middle, and by how much \[rad\]. The mesh has no faults.
+/// The shell within which the normal turns most from that of its middle, and by how much \[rad\]. It needs a mesh without faults.
 pub fn most_turned(mesh: &Mesh, nodes: &[Vec3<f64>]) -> Option<(usize, f64)> {
     let turn = |element: &ShellNodes| {
         let ((centre, _), others) = normals(element, nodes);

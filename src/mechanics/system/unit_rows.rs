@@ -302,7 +302,7 @@ mod tests {
         }
     }
 
-    /// Rows that fill while others are subtracted are as many as the rank, and the first that are independent.
+    /// Of rows that fill while others are subtracted, as many are kept as the rank, and they are independent.
     #[test]
     fn rows_that_fill_are_left_out_alike() {
         let (count, columns) = (60, 40);

@@ -479,18 +479,15 @@ fn warped_elements_are_told() {
     }
 }
 
-/// A base of two elements and a web on their common edge, each `turned_over` or not.
-fn tee(turned_over: [bool; 3]) -> String {
-    let places = [
-        [-1, 0, 1],
-        [-1, 10, 1],
-        [0, 0, 0],
-        [0, 10, 0],
-        [1, 0, 0],
-        [1, 10, 0],
-        [0, 0, 10],
-        [0, 10, 10],
-    ];
+/// A base of two elements and a web on their common edge, or one element and two that branch from it, each `turned_over`
+/// or not.
+fn three_sheets(branches: bool, turned_over: [bool; 3]) -> String {
+    let (right, third) = match branches {
+        true => ([1, 2], [1, -2]),
+        false => ([1, 0], [0, 10]),
+    };
+    let edge = |[x, z]: [i32; 2]| [[x, 0, z], [x, 10, z]];
+    let places = [edge([-1, 1]), edge([0, 0]), edge(right), edge(third)].concat();
     let mut text = "$MeshFormat\n2.2 0 8\n$EndMeshFormat\n".to_string();
     text += "$PhysicalNames\n3\n1 1 \"root\"\n1 2 \"tip\"\n2 3 \"tee\"\n$EndPhysicalNames\n";
     text += "$Nodes\n8\n";
@@ -509,7 +506,8 @@ fn tee(turned_over: [bool; 3]) -> String {
     text + "$EndElements\n"
 }
 
-/// Where a web meets a base, both halves of the base are one sheet, however their elements are wound.
+/// Where a web meets a base, both halves of the base are one sheet, however their elements are wound; and each branch is one
+/// with what it branches from.
 #[test]
 fn windings_do_not_matter_where_three_sheets_meet() {
     let mut document = at_rest(json!({"gmsh": {"file": "tee.msh", "unit": "m"}}));
@@ -522,21 +520,20 @@ fn windings_do_not_matter_where_three_sheets_meet() {
         "y": {"displacement": {"case": "a", "nodes": "tip", "direction": [0, 1, 0]}},
         "z": {"displacement": {"case": "a", "nodes": "tip", "direction": [0, 0, 1]}}
     });
-    let of = |turned_over: [bool; 3]| {
-        let read = parsed(&document, &[("tee.msh", &tee(turned_over))]);
+    let of = |branches: bool, turned_over: [bool; 3]| {
+        let text = three_sheets(branches, turned_over);
+        let read = parsed(&document, &[("tee.msh", &text)]);
         values(&read.unwrap_or_else(|faults| panic!("{faults}")))
     };
-    let expected = of([false; 3]);
+    let expected = [false, true].map(|branches| of(branches, [false; 3]));
     for turned_over in [
         [true, false, false],
         [false, true, true],
         [false, false, true],
     ] {
-        assert_close(
-            &of(turned_over),
-            &expected,
-            1e-10,
-            &format!("{turned_over:?}"),
-        );
+        for (branches, expected) in [false, true].into_iter().zip(&expected) {
+            let what = format!("{branches} {turned_over:?}");
+            assert_close(&of(branches, turned_over), expected, 1e-10, &what);
+        }
     }
 }

@@ -100,8 +100,10 @@ const NEARBY: f64 = 1e-9;
 const SMALL: f64 = 1e-6;
 /// Number of starts that are kept.
 const KEPT: usize = 12;
+/// Number of factors of one start that are kept.
+const KEPT_AT_ONCE: usize = 8;
 
-/// Known real starts, keyed by the numbers of their models, and the factors of the latest one. A scene is made
+/// Known real starts, keyed by the numbers of their models, and factors of the latest one, for each thread its own. A scene is made
 /// repeatedly at one design, for its values and for each derivative.
 #[derive(Clone, Debug, Default)]
 pub struct KnownStarts(Arc<Mutex<Known>>);
@@ -190,10 +192,10 @@ fn take<T>(all: &mut Vec<(Vec<f64>, T)>, numbers: &[f64]) -> Option<T> {
     Some(all.swap_remove(at).1)
 }
 
-/// Keeps one of these numbers for each thread, and no others.
+/// Keeps one of these numbers for each thread, up to some, and no others.
 fn keep<T>(all: &mut Vec<(Vec<f64>, T)>, numbers: Vec<f64>, own: T) {
     all.retain(|(others, _)| *others == numbers);
-    if all.len() < rayon::current_num_threads() {
+    if all.len() < rayon::current_num_threads().min(KEPT_AT_ONCE) {
         all.push((numbers, own));
     }
 }

@@ -226,6 +226,7 @@ impl Solver<'_> {
             if there < if all { wanted.count.max(1) } else { count } {
                 // Lanczos converges for symmetric matrices.
                 if !all && !self.is_symmetric(&mut softened, found) {
+                    self.lower_shift(&mut softened, found, shift)?;
                     return Ok(None);
                 }
                 return none(match all {
@@ -237,6 +238,7 @@ impl Solver<'_> {
                 });
             }
             let Some(mut modes) = self.ritz(&mut softened, found, space)? else {
+                self.lower_shift(&mut softened, found, shift)?;
                 return Ok(None);
             };
             self.refine(&mut softened, found, (&free, &mut modes));
@@ -259,10 +261,21 @@ impl Solver<'_> {
             }
             count = (2 * count).min(MOST_MODES);
         };
-        if shift > self.least_shift(found) {
-            self.factorise_at(softened.factors, found)?;
-        }
+        self.lower_shift(&mut softened, found, shift)?;
         Ok(Some(out))
+    }
+
+    /// Makes the factors with the least σ again, if they are with a larger one. Kept ones are the same as new ones.
+    fn lower_shift(
+        &self,
+        softened: &mut Softened,
+        found: &State<f64>,
+        shift: f64,
+    ) -> Result<(), AssemblyFailure> {
+        match shift > self.least_shift(found) {
+            true => self.factorise_at(softened.factors, found),
+            false => Ok(()),
+        }
     }
 
     /// Whether K is symmetric, by two motions of low frequencies.
