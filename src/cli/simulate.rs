@@ -7,7 +7,7 @@ use super::{
     DONE, Failure, NOT_REACHED, load, no_page, print, read, refine, shown, tell, write_report,
 };
 use crate::driver::ends::Ends;
-use crate::driver::{self, CheckedDerivative, Simulation, not_finite};
+use crate::driver::{self, CheckedDerivative, Simulation, Verdict, not_finite};
 use crate::figures::tables::ReactionAxes;
 use crate::library;
 use crate::problem::Problem;
@@ -169,35 +169,28 @@ pub(crate) fn check(job: &Job, from: Option<&Path>, tolerance: f64) -> Result<u8
     let mut failed = 0;
     for d in &derivatives {
         let difference = d.relative_difference();
-        let nothing = d.is_round_off();
-        // Round-off of larger terms, if the derivative itself is small.
-        let round_off = !nothing && difference > tolerance && d.differs_by_round_off();
-        let noise = !nothing && difference > tolerance && !round_off && d.differs_by_noise();
-        let passed = nothing || round_off || noise || difference <= tolerance;
-        failed += usize::from(!passed);
-        worst = if difference.is_nan() {
-            f64::NAN
-        } else if nothing || round_off || noise {
-            worst
-        } else {
-            worst.max(difference)
+        let verdict = d.verdict(tolerance);
+        failed += usize::from(verdict == Verdict::Differ);
+        worst = match verdict {
+            _ if difference.is_nan() => f64::NAN,
+            Verdict::Agree | Verdict::Differ => worst.max(difference),
+            Verdict::Nothing | Verdict::RoundOff | Verdict::Noise => worst,
         };
-        let verdict = if nothing {
-            "  zero but for round-off".to_string()
-        } else if round_off {
-            "  differs by round-off of larger terms".to_string()
-        } else if noise {
-            let moved = d.noise();
-            format!("  differs by what Newton's method leaves, {moved:.1e}")
-        } else if passed {
-            String::new()
-        } else if !problem.has_scene() {
-            "  exceeds the tolerance".to_string()
-        } else {
-            format!(
-                "  exceeds the tolerance; where Newton's method stops moves it by {:.1e}",
-                d.noise()
-            )
+        let verdict = match verdict {
+            Verdict::Nothing => "  zero but for round-off".to_string(),
+            Verdict::Agree => String::new(),
+            Verdict::RoundOff => "  differs by round-off of larger terms".to_string(),
+            Verdict::Noise => {
+                let moved = d.noise();
+                format!("  differs by what Newton's method leaves, {moved:.1e}")
+            }
+            Verdict::Differ if !problem.has_scene() => "  exceeds the tolerance".to_string(),
+            Verdict::Differ => {
+                let moved = d.noise();
+                format!(
+                    "  exceeds the tolerance; where Newton's method stops moves it by {moved:.1e}"
+                )
+            }
         };
         let _ = writeln!(
             text,

@@ -45,7 +45,37 @@ pub struct CheckedDerivative {
     pub in_use: f64,
 }
 
+/// How the two values of a derivative compare.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Verdict {
+    /// Both are zero but for round-off.
+    Nothing,
+    /// They agree to the tolerance.
+    Agree,
+    /// They differ by round-off of larger terms, and the derivative itself is small.
+    RoundOff,
+    /// They differ by what Newton's method leaves.
+    Noise,
+    /// They differ.
+    Differ,
+}
+
 impl CheckedDerivative {
+    /// How its values compare, by a relative tolerance.
+    pub fn verdict(&self, tolerance: f64) -> Verdict {
+        if self.is_round_off() {
+            Verdict::Nothing
+        } else if self.relative_difference() <= tolerance {
+            Verdict::Agree
+        } else if self.differs_by_round_off() {
+            Verdict::RoundOff
+        } else if self.differs_by_noise() {
+            Verdict::Noise
+        } else {
+            Verdict::Differ
+        }
+    }
+
     /// |adjoint − complex step| relative to the complex step; absolute if that is zero.
     pub fn relative_difference(&self) -> f64 {
         relative(self.adjoint, self.complex_step)
@@ -66,7 +96,7 @@ impl CheckedDerivative {
     }
 
     /// Whether its two values differ by no more than what Newton's method leaves, and that is little.
-    pub fn differs_by_noise(&self) -> bool {
+    fn differs_by_noise(&self) -> bool {
         let noise = self.noise();
         self.complex_step != 0.0 && self.relative_difference() <= noise && noise <= LITTLE
     }

@@ -59,7 +59,7 @@ pub use analysed::check;
 pub use analysed::{Analysed, AnalysisFailure, Simulated};
 pub use certificate::certify;
 pub use chaos::chaos;
-pub use check::CheckedDerivative;
+pub use check::{CheckedDerivative, Verdict};
 pub use evaluate::Evaluated;
 pub use explain::{explain, explain_phases, merged_errs};
 pub use known_evaluations::KnownEvaluations;

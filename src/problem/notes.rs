@@ -89,12 +89,15 @@ fn turned_elements(document: &Document) -> impl Iterator<Item = String> {
             ShellKind::Mitc4 => (WARPED, "warped"),
             ShellKind::Mitc9 => (CURVED, "curved"),
         };
-        let count = element.iter().count() as f64;
-        let [x, y, z] = element.iter().map(|&k| part.nodes[k]).sum::<Vec3<f64>>().unscale(count).into();
+        let places = element.iter().map(|&node| part.nodes[node]);
+        let middle = places.sum::<Vec3<f64>>() / element.len() as f64;
         (turn > most).then(|| {
             format!(
-                "{what}: the element at ({x:.4}, {y:.4}, {z:.4}) m is {word}: its normal turns by {:.1} degrees from its middle to \
+                "{what}: the element at ({:.4}, {:.4}, {:.4}) m is {word}: its normal turns by {:.1} degrees from its middle to \
                  a node; from {:.1} on such elements err, and smaller ones err less",
+                middle.x,
+                middle.y,
+                middle.z,
                 turn.to_degrees(),
                 most.to_degrees()
             )

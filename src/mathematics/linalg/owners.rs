@@ -57,25 +57,17 @@ impl Owners {
         remainders: &mut [Vec<S>],
     ) -> Result<(), SingularMatrix> {
         let last = |b: usize| branches[b].fronts.end - 1;
-        let made: Vec<(usize, Option<usize>)> = match self.team.is_alone() {
-            true => done.into_iter().map(|(b, end)| (b, column(end))).collect(),
-            false => {
-                let own = done.into_iter().map(|(b, end)| {
-                    let remainder = std::mem::take(&mut remainders[last(b)]);
-                    ((b, column(end)), remainder)
-                });
-                let all = self.team.gather(own);
-                let taken = all.into_iter().map(|(of, remainder)| {
-                    remainders[last(of.0)] = remainder;
-                    of
-                });
-                taken.collect()
-            }
-        };
-        let singular = made
-            .into_iter()
-            .filter_map(|(b, column)| Some((b, column?)));
-        match singular.min() {
+        let own = done.into_iter().map(|(b, end)| {
+            let column = end.err().map(|singular| singular.column);
+            (b, column, std::mem::take(&mut remainders[last(b)]))
+        });
+        let mut singular: Option<(usize, usize)> = None;
+        for (b, column, remainder) in self.team.gather(own) {
+            remainders[last(b)] = remainder;
+            let found = column.map(|column| (b, column));
+            singular = singular.into_iter().chain(found).min();
+        }
+        match singular {
             Some((_, column)) => Err(SingularMatrix { column }),
             None => Ok(()),
         }
@@ -107,9 +99,4 @@ impl Owners {
             }
         }
     }
-}
-
-/// The column of a singular matrix.
-fn column(end: Result<(), SingularMatrix>) -> Option<usize> {
-    end.err().map(|singular| singular.column)
 }

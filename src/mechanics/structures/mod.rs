@@ -26,7 +26,7 @@ pub mod quality;
 mod reactions;
 pub mod refined;
 pub mod resultants;
-pub mod sheets;
+mod sheets;
 pub mod shell;
 pub mod state;
 pub mod statics;

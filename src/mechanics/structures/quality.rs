@@ -1,7 +1,7 @@
 //! Faults of a mesh: loose nodes, inverted or warped elements, mid nodes out of place.
 
 use super::mesh::{Edge, Mesh, shell_edges};
-use super::sheets::fold_angle;
+use super::sheets::{corner_tangents, fold_angle, normal};
 use super::shell::basis::Basis;
 use super::shell::{ShellKind, ShellNodes};
 use crate::math::Vec3;
@@ -131,7 +131,8 @@ impl MeshFault {
 
 /// All faults of a mesh with nodes at these places \[m\].
 pub fn faults(mesh: &Mesh, nodes: &[Vec3<f64>]) -> Vec<MeshFault> {
-    let mut all = connectivity(mesh);
+    let at_edges = elements_at_edges(mesh);
+    let mut all = connectivity(mesh, &at_edges);
     if !all.is_empty() {
         return all;
     }
@@ -144,7 +145,7 @@ pub fn faults(mesh: &Mesh, nodes: &[Vec3<f64>]) -> Vec<MeshFault> {
         for (shell, element) in mesh.shells.iter().enumerate() {
             all.extend(shape(shell, element, nodes));
         }
-        all.extend(opposite_sheets(mesh, nodes));
+        all.extend(opposite_sheets((mesh, nodes), &at_edges));
         for (beam, element) in mesh.beams.iter().enumerate() {
             all.extend(beam_shape(beam, &element.map(|k| nodes[k])));
         }
@@ -152,7 +153,7 @@ pub fn faults(mesh: &Mesh, nodes: &[Vec3<f64>]) -> Vec<MeshFault> {
     all
 }
 
-fn connectivity(mesh: &Mesh) -> Vec<MeshFault> {
+fn connectivity(mesh: &Mesh, at_edges: &AtEdges) -> Vec<MeshFault> {
     let mut used = vec![false; mesh.nodes];
     let mut all = Vec::new();
     for (shell, element) in mesh.shells.iter().enumerate() {
@@ -178,14 +179,16 @@ fn connectivity(mesh: &Mesh) -> Vec<MeshFault> {
     }
     let loose = used.iter().enumerate().filter(|(_, used)| !**used);
     all.extend(loose.map(|(node, _)| MeshFault::LooseNode { node }));
-    all.extend(opposite_normals(mesh));
+    all.extend(opposite_normals(at_edges));
     all
 }
 
 /// The elements at each edge with the direction in which it is written. An element's boundary runs along its edges in turn,
 /// and its neighbour runs through the same edge backwards.
-fn elements_at_edges(mesh: &Mesh) -> HashMap<Edge, Vec<usize>> {
-    let mut all: HashMap<Edge, Vec<usize>> = HashMap::new();
+type AtEdges = HashMap<Edge, Vec<usize>>;
+
+fn elements_at_edges(mesh: &Mesh) -> AtEdges {
+    let mut all = AtEdges::new();
     for (shell, element) in mesh.shells.iter().enumerate() {
         for (k, mut nodes) in shell_edges(element).into_iter().enumerate() {
             if k >= 2 {
@@ -204,49 +207,44 @@ fn backwards(edge: &Edge) -> Edge {
 }
 
 /// Edges of two elements that both run through in the same direction.
-fn opposite_normals(mesh: &Mesh) -> Vec<MeshFault> {
-    let seen = elements_at_edges(mesh);
+fn opposite_normals(at_edges: &AtEdges) -> Vec<MeshFault> {
     let opposite = |(edge, shells): (&Edge, &Vec<usize>)| {
-        let others = seen.get(&backwards(edge)).map_or(0, Vec::len);
+        let others = at_edges.get(&backwards(edge)).map_or(0, Vec::len);
         match (shells.as_slice(), others) {
             (&[first, second], 0) => Some([first, second]),
             _ => None,
         }
     };
-    in_order(seen.iter().filter_map(opposite).collect())
+    in_order(at_edges.iter().filter_map(opposite).collect())
 }
 
 /// Elements that meet others at an edge, continue each other smoothly there, and run through it in the same direction.
-fn opposite_sheets(mesh: &Mesh, nodes: &[Vec3<f64>]) -> Vec<MeshFault> {
-    let seen = elements_at_edges(mesh);
+fn opposite_sheets((mesh, nodes): (&Mesh, &[Vec3<f64>]), at_edges: &AtEdges) -> Vec<MeshFault> {
     // At the edge, where directors are.
-    let normal = |shell: usize, edge: &Edge| -> Vec3<f64> {
+    let normal_at = |shell: usize, edge: &Edge| -> Vec3<f64> {
         let element = &mesh.shells[shell];
-        let at_nodes = element.iter().zip(normals(element, nodes).1);
-        let at_edge = at_nodes.filter(|(node, _)| edge.contains(node));
-        at_edge
-            .map(|(_, (n, _))| n.normalize())
-            .sum::<Vec3<f64>>()
-            .normalize()
+        let at_edge = (0..element.len()).filter(|&local| edge.contains(&element[local]));
+        let normals = at_edge.map(|local| normal(&corner_tangents(element, local, nodes)));
+        normals.sum::<Vec3<f64>>().normalize()
     };
     let mut all = Vec::new();
-    for (edge, shells) in &seen {
-        let others = seen.get(&backwards(edge)).map_or(0, Vec::len);
+    for (edge, shells) in at_edges {
+        let others = at_edges.get(&backwards(edge)).map_or(0, Vec::len);
         if shells.len() < 2 || shells.len() + others < 3 {
             continue;
         }
         for (k, &first) in shells.iter().enumerate() {
             for &second in &shells[k + 1..] {
                 let fold = fold_angle(ShellKind::of(&mesh.shells[first]));
-                if normal(first, edge).dot(&normal(second, edge)) < -fold.cos() {
+                if normal_at(first, edge).dot(&normal_at(second, edge)) < -fold.cos() {
                     all.push([first.min(second), first.max(second)]);
                 }
             }
         }
     }
-    all.sort_unstable();
-    all.dedup();
-    in_order(all)
+    let mut faults = in_order(all);
+    faults.dedup();
+    faults
 }
 
 fn in_order(mut pairs: Vec<[usize; 2]>) -> Vec<MeshFault> {

@@ -10,7 +10,7 @@ use super::shell::{PerNode, ShellKind, ShellNodes};
 use crate::math::{Scalar, Vec3, scalar::length};
 
 /// Angle between normals above which a node is on a fold \[rad\].
-pub fn fold_angle(kind: ShellKind) -> f64 {
+pub(super) fn fold_angle(kind: ShellKind) -> f64 {
     match kind {
         ShellKind::Mitc9 => 0.35,
         ShellKind::Mitc4 => 0.6,
