@@ -15,7 +15,7 @@ use crate::math::scalar::COMPLEX_STEP;
 use crate::math::soft_max::Smoothed;
 use crate::math::{Complex64, Dual, Parameters, Team};
 use crate::model::flexible::FlexibleBody;
-use crate::model::{Form, JointFrame, RigidBody};
+use crate::model::{JointFrame, RigidBody};
 use crate::problem::{Composition, EndCotangent, Focus, Partials, Problem};
 use crate::system::equilibrium::FrozenMode;
 use crate::system::flexible;
@@ -458,10 +458,6 @@ fn moved_scene(problem: &Problem, x: &[f64], i: usize) -> Result<Scene<Dual>, In
     let mut scene = problem.scene(&x);
     scene.admit_start()?;
     // Each rank has its own variables, so nothing else is exchanged meanwhile.
-    for body in &mut scene.model.flexible {
-        if let Form::Finite(own) = &mut body.form {
-            own.team = Team::default();
-        }
-    }
+    flexible::set_team(&mut scene.model, &Team::default());
     Ok(scene)
 }

@@ -1,8 +1,9 @@
 //! The map from a design to its scene, compiled once for each scalar.
 
-use super::{Problem, StaticScene, Statics, phases, scene, together};
+use super::{Problem, StaticScene, Statics, phases, scene};
 use crate::functions::{Function, Scene};
 use crate::math::{Complex64, Dual, Scalar};
+use crate::system::flexible;
 
 /// Scalars in which a scene can be built: `f64` for values, `Complex64` for the complex step, `Dual` for
 /// derivatives by a variable. Other crates call these instances instead of compiling their own.
@@ -40,7 +41,7 @@ scene_scalar!(Dual);
 fn unlowered_scene<S: Scalar>(problem: &Problem, x: &[S]) -> Scene<S> {
     let (x, state) = problem.split(x);
     let mut scene = scene::scene(&problem.written, &problem.order, &problem.extended(x));
-    together::give(&problem.team, &mut scene.model);
+    flexible::set_team(&mut scene.model, &problem.team);
     phases::begin(&problem.written, &mut scene, state);
     for (joint, left_out) in scene.model.joints.iter_mut().zip(&problem.left_out) {
         let (rows, fit) = left_out;

@@ -1,25 +1,13 @@
 //! Motions that several processes compute together.
 
 use super::{Division, Problem};
-use crate::math::{Scalar, Team};
-use crate::model::{Form, Model};
+use crate::math::Team;
+use crate::model::Form;
 use std::sync::Arc;
 use std::sync::atomic::AtomicBool;
 
 /// Elements of a body from which on ranks divide them.
 const ENOUGH: usize = 16;
-
-/// Gives the bodies of finite elements to the ranks.
-pub(super) fn give<S: Scalar>(team: &Team, model: &mut Model<S>) {
-    if team.is_alone() {
-        return;
-    }
-    for body in &mut model.flexible {
-        if let Form::Finite(own) = &mut body.form {
-            own.team = team.clone();
-        }
-    }
-}
 
 impl Problem {
     /// Whether several processes may compute its motions together: a body has enough elements, and no clock of one process

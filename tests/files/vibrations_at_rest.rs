@@ -466,6 +466,74 @@ fn derivatives_of_small_damping_ratios_are_exact() {
     }
 }
 
+/// A plate of 1 m × 0.5 m that is welded at an edge, of this thickness.
+fn thin_plate(thickness: f64, functions: Value) -> Value {
+    json!({
+        "version": 1, "name": "plate", "analysis": "rest", "gravity": [0, 0, 0],
+        "materials": {"aluminium": {"young": 7e10, "poisson": 0.3, "density": 2700}},
+        "bodies": {"plate": {"elements": {
+            "structure": {
+                "mesh": {"plate": {"length": 1, "width": 0.5, "elements": [8, 4]}},
+                "material": "aluminium", "thickness": thickness
+            },
+            "frame": {"clamped": "x0"}, "points": {"root": {"rigid": "x0"}}
+        }}},
+        "joints": {"wall": {"weld": {"between": ["plate", "ground"], "at": "plate.root"}}},
+        "functions": functions,
+        "variables": {
+            "E": {"path": "/materials/aluminium/young", "lower": 1e10, "upper": 1e12},
+            "rho": {"path": "/materials/aluminium/density", "lower": 1e2, "upper": 1e4},
+            "h": {"path": "/bodies/plate/elements/structure/thickness", "lower": thickness / 2.0, "upper": thickness * 2.0}
+        }
+    })
+}
+
+/// A frequency is proportional to √(E / ρ). A thin plate is much stiffer in shear than in bending, by up to 10⁸ here.
+#[test]
+fn thin_plates_have_exact_frequencies() {
+    for thickness in [1e-2, 1e-3, 1e-4] {
+        let problem = parsed(&thin_plate(thickness, frequencies(4)));
+        let x = problem.start();
+        let at = Simulated::of(&problem, &x).expect("frequencies");
+        for own in check(&problem, &x).expect("derivatives") {
+            let [f, x] = [at.value(own.function), x[own.variable]];
+            let off = (own.adjoint - own.complex_step) / own.complex_step;
+            assert!(off.abs() < 1e-12, "{thickness}: {own:?}");
+            if own.variable < 2 {
+                let expected = [0.5, -0.5][own.variable] * f / x;
+                let off = own.adjoint / expected - 1.0;
+                assert!(off.abs() < 1e-12, "{thickness}: {own:?} {off}");
+            }
+        }
+    }
+}
+
+/// Damping in proportion to mass and stiffness: 2 ζ ω = α + β ω².
+#[test]
+fn damped_thin_plates_have_their_ratios() {
+    let functions = json!({
+        "f": {"frequency": {"mode": 1}}, "z": {"damping_ratio": {"mode": 1}}, "z4": {"damping_ratio": {"mode": 4}}
+    });
+    for k in 0..20 {
+        let thickness = 1e-4 * (1.0 + 0.013 * f64::from(k));
+        let mut document = thin_plate(thickness, functions.clone());
+        document["bodies"]["plate"]["elements"]["structure"]["damping"] =
+            json!({"mass": 0.02, "stiffness": 1e-4});
+        let problem = parsed(&document);
+        let x = problem.start();
+        let at = Simulated::of(&problem, &x).expect("vibrations");
+        let omega = 2.0 * PI * at.value(0);
+        let expected = (0.02 / omega + 1e-4 * omega) / 2.0;
+        assert!((at.value(1) / expected - 1.0).abs() < 1e-6, "{thickness}");
+        if k % 10 == 0 {
+            for own in check(&problem, &x).expect("derivatives") {
+                let off = (own.adjoint - own.complex_step) / own.complex_step;
+                assert!(off.abs() < 1e-12, "{thickness}: {own:?}");
+            }
+        }
+    }
+}
+
 /// A force that turns with its body has no potential, and the stiffness is not symmetric.
 #[test]
 fn frequencies_under_a_following_force_are_those_with_damping() {

@@ -1,8 +1,9 @@
-//! Sparse linear algebra: static patterns, LU and Cholesky factorisation.
+//! Linear algebra: static patterns of sparse matrices, their LU and Cholesky factors, and eigenvalues of dense ones.
 
 mod border;
 mod branches;
 pub mod cholesky;
+mod eigenvalues;
 mod eliminated;
 mod elimination;
 mod factors;
@@ -21,6 +22,7 @@ mod sparse_lu;
 mod substitution;
 mod workspace;
 
+pub use eigenvalues::eigenvalues;
 pub use elimination::{Factors, Pivots, SingularMatrix, SolveScalar};
 pub use factors::{LAST, REFINED_SOLVES, SparseLu, is_last};
 pub use front::System;

@@ -10,6 +10,12 @@ pub fn vectorised<T>(work: impl FnOnce() -> T) -> T {
     pulp::Arch::new().dispatch(work)
 }
 
+/// n numbers in (−1/2, 1/2) that look random, the same in every run for a `seed`. Such a vector has a part of each eigenvector.
+pub fn any_vector(n: usize, seed: f64) -> Vec<f64> {
+    let any = |i: usize| (seed * (1.0 + i as f64).sqrt()).fract() - 0.5;
+    (0..n).map(any).collect()
+}
+
 /// Σ a_i b_i over the common indices.
 pub fn dot<S: Scalar>(a: &[S], b: &[S]) -> S {
     let products = a.iter().zip(b);

@@ -37,6 +37,8 @@ pub const QUADRATIC: usize = 16;
 pub const SQUARES: usize = 12;
 /// Slopes of an element: r_p, then the s_p that are others.
 pub const SLOPES: usize = 2 * QUADRATIC - SQUARES;
+/// Numbers of its shear strains, at most.
+pub const SHEARS: usize = 12;
 /// Strains or curvatures at its Gauss points, three each.
 pub const AT_GAUSS_POINTS: usize = 27;
 
@@ -131,6 +133,8 @@ pub struct ShellElement {
     pub plane: [[f64; STRAINS]; STRAINS],
     /// K_b and K_s for E = h = 1.
     pub linear: [Symmetric; 2],
+    /// S with K_s = Sᵀ S. Its products have less round-off than those of K_s, which is much stiffer than K_b where h is small.
+    pub shear: Columns<SHEARS>,
     /// What stresses need; made for the first of them.
     pub stress: OnceLock<Box<StressOperator>>,
     /// Poisson's ratio.

@@ -204,6 +204,9 @@ fn element(configuration: &Configuration<f64>, index: usize) -> ShellElement {
             })
         })),
         plane: operators.plane,
+        shear: Columns::of(
+            (0..moves.len()).map(|i| std::array::from_fn(|p| operators.shear[p][i])),
+        ),
         linear: operators.linear.map(|all| Symmetric::of(&all, moves.len())),
         stress: OnceLock::new(),
         moves,

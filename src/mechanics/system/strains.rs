@@ -91,6 +91,32 @@ pub fn add_jacobian<S: Scalar>(own: &ModalStiffness<S>, q: &[S], by_y: &mut Bloc
     }
 }
 
+/// lᵀ A r for the derivatives A of [`add_forces`] by q, and of [`add_viscous`] by q and by q̇.
+pub fn products<S: Scalar>(
+    own: &ModalStiffness<S>,
+    (q, rate): (&[S], &[S]),
+    [l, r]: [&[S]; 2],
+) -> [S; 3] {
+    let mut linear = vec![S::zero(); q.len()];
+    add_product(&own.linear, r, &mut linear);
+    let mut viscous = dot(&linear, l);
+    let (mut curved, mut by_place) = (S::zero(), S::zero());
+    for strain in &own.strains {
+        let form = &strain.strain;
+        let bent = |x: &[S], y: &[S]| {
+            let squares = form.squares.iter();
+            squares.fold(S::zero(), |sum, (c, g)| sum + *c * dot(g, x) * dot(g, y))
+        };
+        let gradient = gradient(form, q);
+        let [along_l, along_r, speed] = [l, r, rate].map(|x| dot(&gradient, x));
+        let k = strain.weight;
+        viscous += k * along_l * along_r;
+        curved += k * form.value(q) * bent(l, r);
+        by_place += k * (along_l * bent(rate, r) + speed * bent(l, r));
+    }
+    [viscous + curved, by_place, viscous]
+}
+
 /// Pulls the cotangent ψ of [`add_forces`] back to q (added) and to the parameters (added to `cot`).
 pub fn pull_forces(
     own: &ModalStiffness<f64>,

@@ -19,7 +19,9 @@ use super::field::{AtPoint, Field, add_interpolate_transpose, interpolate, sum};
 use super::frame::{self, Frame};
 use super::matrix::{ElementMatrix, MOST_UNKNOWNS, RotationAxes};
 use super::strain::Terms;
+use crate::math::slices::add_scaled;
 use crate::math::{Scalar, Vec3};
+use nalgebra::SMatrix;
 
 /// Strain parameters of membrane and of bending, at most; those that a kind does not have are zero.
 const PARAMETERS: usize = TYING_POINTS + 3;
@@ -124,6 +126,8 @@ pub struct Operators {
     pub plane: [[f64; PARAMETERS]; PARAMETERS],
     /// K_b and K_s, by rows.
     pub linear: [Vec<f64>; 2],
+    /// S with K_s = Sᵀ S.
+    pub shear: Rows<f64, SHEAR_POINTS>,
 }
 
 impl Shell<f64> {
@@ -166,8 +170,26 @@ impl Shell<f64> {
             slopes,
             plane: std::array::from_fn(|p| std::array::from_fn(|q| all.plane[p.max(q)][p.min(q)])),
             linear: [bending, shear],
+            shear: root_rows(&all.shear_stiffness, &all.shear),
         }
     }
+}
+
+/// D^½ Vᵀ B for a stiffness V D Vᵀ, of which the lower part is given, between the rows B.
+fn root_rows(
+    stiffness: &[[f64; SHEAR_POINTS]; SHEAR_POINTS],
+    rows: &Rows<f64, SHEAR_POINTS>,
+) -> Rows<f64, SHEAR_POINTS> {
+    let entry = |p: usize, q: usize| stiffness[p.max(q)][p.min(q)];
+    let eigen = SMatrix::<f64, SHEAR_POINTS, SHEAR_POINTS>::from_fn(entry).symmetric_eigen();
+    std::array::from_fn(|p| {
+        let root = eigen.eigenvalues[p].max(0.0).sqrt();
+        let mut out = [0.0; MOST_UNKNOWNS];
+        for (q, row) in rows.iter().enumerate() {
+            add_scaled(&mut out, root * eigen.eigenvectors[(q, p)], row);
+        }
+        out
+    })
 }
 
 impl<S: Scalar> Shell<S> {

@@ -15,10 +15,11 @@
 //! with the changes of the equilibrium by x and by Ω. A round shaft has two such motions, in two planes. Both keep one speed
 //! if their matrix of derivatives is a multiple of the unit matrix; else the speed has no derivative.
 
+use super::contracted::{Between, contracted};
 use super::eigenpairs::{Cluster, clusters};
 use super::equations::State;
 use super::krylov::lowest;
-use super::pencil::{At, Between, Matrices, contracted};
+use super::pencil::{At, Matrices};
 use super::rest::{FLOOR, FREE};
 use super::turning::Turning;
 use super::unresisted::unresisted;

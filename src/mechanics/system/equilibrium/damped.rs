@@ -8,11 +8,12 @@
 //! with the rows of constraints in K, and with the change of rest. Eigenvalues that meet have the mean of their derivatives,
 //! so that sums over them have the derivative of the sum.
 
+use super::contracted::contracted;
 use super::eigenpairs::{Cluster, clusters};
 use super::equations::State;
 use super::krylov::{GROWS, growing, lowest};
 use super::modes::{Vibration, WantedModes};
-use super::pencil::{At, Matrices, contracted};
+use super::pencil::{At, Matrices};
 use super::released::Released;
 use super::rest::FREE;
 use super::{KnownStarts, Solver};

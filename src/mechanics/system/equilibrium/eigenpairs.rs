@@ -10,7 +10,8 @@
 //! has the eigenvectors themselves as limits. Eigenvalues that are nearly equal have a common space, whose bases are made
 //! such that l_iᵀ (D + 2 s M) y_j = δ_ij.
 
-use super::pencil::{Between, Matrices, product};
+use super::contracted::Between;
+use super::pencil::{Matrices, product};
 use crate::linalg::SparseLu;
 use crate::math::Complex64;
 use crate::system::failure::AssemblyFailure;

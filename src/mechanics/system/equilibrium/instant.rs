@@ -9,10 +9,11 @@
 //! ds = −lᵀ (dK + s dD + s² dM) r
 //! ```
 
+use super::contracted::contracted;
 use super::damped::{DampedVibration, Spectrum, damped_vibrations};
 use super::eigenpairs::{Cluster, clusters};
 use super::krylov::lowest;
-use super::pencil::{At, Matrices, Moves, contracted};
+use super::pencil::{At, Matrices, Moves};
 use super::rest::FREE;
 use crate::math::{Complex64, Dual, Parameters, Scalar};
 use crate::model::Model;

@@ -116,36 +116,6 @@ fn emit_chosen(
     });
 }
 
-/// uᵀ A u for the matrix A = [K, Gᵀ; G, 0] of rest, in any scalar.
-pub(super) fn contracted<S: Scalar>(
-    layout: &Layout,
-    (model, x): (&Model<S>, &State<S>),
-    u: &[f64],
-) -> S {
-    let mut product = Contracted { u, sum: S::zero() };
-    let places = &places(layout);
-    let mut chosen = Chosen {
-        places,
-        emit: &mut product,
-    };
-    emit_reduced(layout.numbering, PARTS, &mut chosen, |emit| {
-        emit_balance(layout, (model, x), emit);
-    });
-    product.sum
-}
-
-/// Sums u_i a_ij u_j over the entries.
-struct Contracted<'a, S> {
-    u: &'a [f64],
-    sum: S,
-}
-
-impl<S: Scalar> Emit<S> for Contracted<'_, S> {
-    fn add(&mut self, row: usize, column: usize, value: S) {
-        self.sum += value * (self.u[row] * self.u[column]);
-    }
-}
-
 /// The place of each reduced row or column among the unknowns; `None` of those that are no
 /// unknowns.
 fn places(layout: &Layout) -> Vec<Option<usize>> {

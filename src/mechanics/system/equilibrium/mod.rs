@@ -19,6 +19,7 @@
 //! theorem, as in [`super::nearest`]. The matrix of these steps is exact by its products (dual numbers); the factors of
 //! a sparse one, without the derivatives of M and G in the rows of rigid motions, precondition it ([`gmres`]).
 
+mod contracted;
 mod critical;
 mod damped;
 mod descent;
@@ -510,7 +511,7 @@ impl Solver<'_> {
             if !wanted.none_undamped() {
                 (out.undamped, shapes) = match self.known_modes(found, wanted)? {
                     Some(modes) => (
-                        vibrations(layout, (model, x), &modes),
+                        vibrations(layout, at, &modes),
                         shapes_of_modes(&modes, unknowns),
                     ),
                     None => {

@@ -13,13 +13,14 @@
 //!
 //! along the change of rest, so it is exact to first order where y and μ stay.
 
+use super::contracted::{Between, contracted};
 use super::equations::{Layout, State};
-use super::matrix::{Factors, contracted};
+use super::matrix::Factors;
+use super::pencil::At;
 use super::rest::FLOOR;
 use super::{KnownStarts, Solver};
-use crate::math::Scalar;
-use crate::math::slices::{add_scaled, dot};
-use crate::model::Model;
+use crate::math::slices::{add_scaled, any_vector, dot};
+use crate::math::{Complex64, Scalar};
 use crate::structures::modes::{
     Basis, MOST_MODES, NEGLIGIBLE, Operator, REPEATED, dense_pencil, largest,
 };
@@ -282,9 +283,8 @@ impl Solver<'_> {
     fn is_symmetric(&self, softened: &mut Softened, found: &State<f64>) -> bool {
         let along = self.layout.along(self.model, self.given, found);
         let n = self.layout.numbering.unknowns();
-        let [a, b] = [2.3, 3.7].map(|seed: f64| {
-            let any = |i: usize| (seed * (1.0 + i as f64).sqrt()).fract() - 0.5;
-            let mut y: Vec<f64> = (0..n).map(any).collect();
+        let [a, b] = [2.3, 3.7].map(|seed| {
+            let mut y = any_vector(n, seed);
             y.resize(self.layout.order(), 0.0);
             softened.factors.solve(&mut y);
             let stiff = along.product(&y);
@@ -408,30 +408,38 @@ pub struct Vibration<S> {
 /// The vibrations of modes in any scalar, at a solution in it, exact to first order.
 pub(super) fn vibrations<S: Scalar>(
     layout: &Layout,
-    (model, x): (&Model<S>, &State<S>),
+    at: At<S>,
     modes: &[Mode],
 ) -> Vec<Vibration<S>> {
-    let n = layout.numbering.unknowns();
-    let motions = layout.at_rest(&x.q);
-    let change = |mode: &Mode| {
-        let y: Vec<S> = mode.shape[..n].iter().map(|&y| S::from(y)).collect();
-        let heavy = layout.mass_product(model, &motions, &y);
-        let kinetic = (heavy.iter().zip(&mode.shape)).fold(S::zero(), |sum, (&a, &b)| sum + a * b);
-        let stiff = contracted(layout, (model, x), &mode.shape);
-        // The real part is zero but for what is not converged.
-        (stiff - kinetic * mode.square).infinitesimal()
-    };
-    let one = |mode: &Mode| {
-        let mut square = S::from(mode.square);
-        if S::INFINITESIMAL {
-            square += S::of_infinitesimal(change(mode));
-        }
+    let mut changes = vec![0.0; modes.len()];
+    if S::INFINITESIMAL {
+        let real = |x: f64| Complex64::new(x, 0.0);
+        let [y, _, _, lambda, ..] = layout.groups();
+        let shape = |mode: &Mode| -> Vec<Complex64> {
+            let both = mode.shape[y.clone()]
+                .iter()
+                .chain(&mode.shape[lambda.clone()]);
+            both.map(|&x| real(x)).collect()
+        };
+        let shapes: Vec<_> = modes.iter().map(shape).collect();
+        let pairs = shapes.iter().zip(modes).map(|(shape, mode)| Between {
+            left: shape,
+            right: shape,
+            factors: [real(1.0), real(0.0), real(-mode.square)],
+        });
+        let pairs: Vec<Between> = pairs.collect();
+        // The real parts are zero but for what is not converged.
+        let sums = contracted(at, &pairs).into_iter();
+        changes = sums.map(|[re, _]| re.infinitesimal()).collect();
+    }
+    let one = |(mode, change): (&Mode, f64)| {
+        let square = S::from(mode.square) + S::of_infinitesimal(change);
         Vibration {
             frequency: square.sqrt() / S::from(2.0 * std::f64::consts::PI),
             repeated: mode.repeated,
         }
     };
-    modes.iter().map(one).collect()
+    modes.iter().zip(changes).map(one).collect()
 }
 
 impl KnownStarts {

@@ -70,7 +70,7 @@ impl<'a, S: Scalar> At<'a, S> {
     }
 
     /// Velocities and accelerations of all bodies, and the time.
-    fn motion(&self) -> ([Vec<S>; 2], S) {
+    pub(super) fn motion(&self) -> ([Vec<S>; 2], S) {
         match self.moves {
             Moves::Not => {
                 let still = vec![S::zero(); self.numbering.velocities()];
@@ -274,47 +274,4 @@ pub(super) fn product(
         }
     }
     out
-}
-
-/// A pair of vectors, and the factors of K, D and M between them.
-pub(super) struct Between<'a> {
-    pub left: &'a [Complex64],
-    pub right: &'a [Complex64],
-    pub factors: [Complex64; 3],
-}
-
-/// By pair: real and imaginary part of lᵀ (a K + b D + c M) r in any scalar, with the rows of constraints in K.
-pub(super) fn contracted<S: Scalar>(at: At<S>, pairs: &[Between]) -> Vec<[S; 2]> {
-    let mut sums = vec![[S::zero(); 2]; pairs.len()];
-    for which in 0..3 {
-        let weight = |k: usize| if k == which { S::one() } else { S::zero() };
-        let weights = Weights {
-            stiffness: weight(0),
-            damping: weight(1),
-            mass: weight(2),
-        };
-        let mut product = Contracted {
-            pairs,
-            which,
-            sums: &mut sums,
-        };
-        emit_pencil(at, weights, &mut product);
-    }
-    sums
-}
-
-struct Contracted<'a, S> {
-    pairs: &'a [Between<'a>],
-    which: usize,
-    sums: &'a mut [[S; 2]],
-}
-
-impl<S: Scalar> Emit<S> for Contracted<'_, S> {
-    fn add(&mut self, row: usize, column: usize, value: S) {
-        for (pair, sum) in self.pairs.iter().zip(self.sums.iter_mut()) {
-            let weight = pair.left[row] * pair.right[column] * pair.factors[self.which];
-            sum[0] += value * weight.re;
-            sum[1] += value * weight.im;
-        }
-    }
 }

@@ -1,15 +1,15 @@
 //! Arnoldi's method for eigenvalues μ of A y = μ y, of largest size first.
 
-use crate::math::slices::{add_scaled, dot};
-use nalgebra::{DMatrix, Dyn, Schur};
+use crate::linalg::eigenvalues;
+use crate::math::slices::{add_scaled, any_vector, dot};
+use nalgebra::DMatrix;
 
 /// Largest dimension of the Krylov space.
 const DIMENSION: usize = 24;
 /// Largest residual |A y − μ y|, relative to |μ|, for |y| = 1 in the metric.
 const CONVERGED: f64 = 1e-2;
-/// Most iterations for the eigenvalues of a small matrix, and what is zero there, beside its neighbours.
+/// Most iterations for the singular vectors of a small matrix.
 const SWEEPS: usize = 10_000;
-const ROUNDINGS: [f64; 3] = [f64::EPSILON, 1e-10, 1e-6];
 /// A vector lies in the space of those before if this part of it is left; and so does one that is found again.
 const DEPENDENT: f64 = 1e-8;
 const DISTINCT: f64 = 0.1;
@@ -72,12 +72,8 @@ fn one_of_each(
         without(known, &mut out);
         out
     };
-    // Any vector has a part of each eigenvector.
     let seed = 1.0 + known.len() as f64;
-    let any: Vec<f64> = (0..n)
-        .map(|i| (seed * (1.0 + i as f64).sqrt()).fract() - 0.5)
-        .collect();
-    let mut next = product(&any);
+    let mut next = product(&any_vector(n, seed));
     let mut basis: Vec<[Vec<f64>; 2]> = Vec::new();
     let mut columns: Vec<Vec<f64>> = Vec::new();
     loop {
@@ -119,12 +115,6 @@ fn one_of_each(
     Some(all)
 }
 
-/// The Schur form of a small matrix. Where many eigenvalues are equal but for noise, iterations do not reach round-off.
-pub(super) fn schur(matrix: &DMatrix<f64>) -> Option<Schur<f64, Dyn>> {
-    let mut all = ROUNDINGS.iter();
-    all.find_map(|&rounding| matrix.clone().try_schur(rounding, SWEEPS))
-}
-
 /// Real eigenvalues that count of the columns of a Hessenberg matrix, with unit eigenvectors.
 fn of_hessenberg(
     columns: &[Vec<f64>],
@@ -135,8 +125,7 @@ fn of_hessenberg(
         return Some(Vec::new());
     }
     let h = DMatrix::from_fn(k, k, |i, j| columns[j].get(i).copied().unwrap_or(0.0));
-    let schur = schur(&h)?;
-    let values = schur.complex_eigenvalues();
+    let values = eigenvalues(&h)?;
     let largest = values.iter().fold(0.0_f64, |m, x| m.max(x.norm()));
     let real = values.iter().filter(|x| x.im == 0.0).map(|x| x.re);
     let vector = |value: f64| {

@@ -10,7 +10,7 @@ use super::equations::State;
 use super::matrix::Factors;
 use super::pencil::{At, Matrices};
 use crate::math::rotation::{compose, from_axis_angle, matrix};
-use crate::math::slices::dot;
+use crate::math::slices::{any_vector, dot};
 use crate::math::{Mat3, Vec3};
 use crate::system::bodies::positions_of;
 use crate::system::failure::AssemblyFailure;
@@ -70,9 +70,7 @@ impl Solver<'_> {
         layout.advance(&mut other, &change);
 
         // A motion that the joints allow.
-        let mut motion: Vec<f64> = (0..layout.order())
-            .map(|i| ((1.0 + i as f64).sqrt() * 7.31).fract() - 0.5)
-            .collect();
+        let mut motion = any_vector(layout.order(), 7.31);
         motion[n..].fill(0.0);
         let metric = self.metric_product(&layout.at_rest(&found.q), &motion[..n]);
         motion[..n].copy_from_slice(&metric);

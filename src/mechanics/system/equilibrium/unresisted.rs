@@ -8,7 +8,7 @@
 
 use super::pencil::Matrices;
 use crate::linalg::SparseLu;
-use crate::math::slices::{add_scaled, dot};
+use crate::math::slices::{add_scaled, any_vector, dot};
 use crate::system::failure::AssemblyFailure;
 use nalgebra::DMatrix;
 
@@ -49,12 +49,7 @@ pub(super) fn unresisted(
         out.truncate(n);
         out
     };
-    let any = |k: usize| -> Vec<f64> {
-        let seed = 3.7 + k as f64;
-        (0..n)
-            .map(|i| ((1.0 + i as f64).sqrt() * seed).fract() - 0.5)
-            .collect()
-    };
+    let any = |k: usize| any_vector(n, 3.7 + k as f64);
     let mut soft = factors(0.0)?;
     let mut space: Vec<Vec<f64>> = (0..allowed.min(MOST)).map(any).collect();
     for _ in 0..ITERATIONS {

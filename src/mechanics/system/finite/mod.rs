@@ -8,6 +8,7 @@ mod emit;
 mod inertia;
 mod orientation;
 mod parts;
+mod products;
 mod stiffness;
 mod stress;
 
@@ -20,5 +21,6 @@ pub use inertia::{
 };
 pub use orientation::{inside_out, turned};
 pub use parts::{of_axial_strains, part_tangent};
+pub use products::{strain_products, without_strains};
 pub use stiffness::{add_forces, diagonal, energy, factors, pull_energy, pull_forces, tangent};
 pub use stress::{pull_stress_ratios, stress_ratios};

@@ -235,6 +235,24 @@ pub fn part_tangent<S: Scalar>(part: &Part<S>, q: &[S]) -> Vec<S> {
     rows.flat_map(|row| row[6..].iter().copied()).collect()
 }
 
+/// lᵀ A r, where A are the derivatives of elastic and viscous forces by coordinates, and by their rates.
+pub(super) fn strain_products<S: Scalar>(
+    finite: &FiniteElements<S>,
+    (q, rate): (&[S], &[S]),
+    pair: [&[S]; 2],
+) -> [S; 2] {
+    let beta = finite.damping.map_or(S::zero(), |[_, beta]| beta);
+    let mut sums = [S::zero(); 2];
+    for (part, coordinates) in all(finite) {
+        let [q, rate] = [q, rate].map(|x| gather(coordinates, x));
+        let [l, r] = pair.map(|x| gather(coordinates, x));
+        let [elastic, turned, viscous] = strains::products(&part.stiffness, (&q, &rate), [&l, &r]);
+        sums[0] += elastic + beta * turned;
+        sums[1] += beta * viscous;
+    }
+    sums
+}
+
 /// Places of the frame and of the coordinates of a part.
 fn own_slots(slots: &[usize], coordinates: &[usize]) -> Vec<usize> {
     let elastic = coordinates.iter().map(|i| slots[6 + i]);

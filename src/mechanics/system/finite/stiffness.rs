@@ -65,6 +65,21 @@ impl<S: Scalar> Strained<S> {
         out
     }
 
+    /// yᵀ (∂²e_p/∂u²) z.
+    pub(super) fn curvature(
+        element: &ShellElement,
+        y: &Deformed<S>,
+        z: &Deformed<S>,
+    ) -> [S; STRAINS] {
+        let [y, z] = [y, z].map(|x| element.slopes.times(&x.all));
+        let mut out = [S::zero(); STRAINS];
+        for (p, out) in out.iter_mut().enumerate().take(QUADRATIC) {
+            let q = other_slope(p);
+            *out = (y[p] * z[q] + z[p] * y[q]) * 0.5;
+        }
+        out
+    }
+
     /// ∂/∂u of the derivatives of the strains along r.
     pub(super) fn turned_gradients(element: &ShellElement, r: &Deformed<S>) -> Gradients<S> {
         let mut out = [[S::zero(); STRAINS]; DISPLACEMENTS];
@@ -128,9 +143,9 @@ pub(super) fn add_linear<S: Scalar>(
     x: &Deformed<S>,
     out: &mut Local<S>,
 ) {
-    let [bending, shear] = &element.linear;
-    bending.add_product(thick, &x.deformation, out);
-    shear.add_product(thin, &x.deformation, out);
+    element.linear[0].add_product(thick, &x.deformation, out);
+    let shear = element.shear.times(&x.deformation).map(|s| s * thin);
+    element.shear.add_transposed(&shear, out);
 }
 
 /// Twice the linear energies of E h³ = 1 and E h = 1, for two motions.
@@ -140,7 +155,8 @@ pub(super) fn linear_products<S: Scalar>(
     y: &Deformed<S>,
 ) -> [S; 2] {
     let (x, y) = (&x.deformation, &y.deformation);
-    element.linear.each_ref().map(|own| own.inner(x, y))
+    let [shear, other] = [x, y].map(|x| element.shear.times(x));
+    [element.linear[0].inner(x, y), dot(&shear, &other)]
 }
 
 /// E h and E h³ of an element.

@@ -27,7 +27,7 @@ use crate::linalg::Emit;
 use crate::math::{Scalar, Team, Vec3, rotation};
 use crate::model::Model;
 use crate::model::flexible::{FlexibleBody, Form, Inertia};
-use coordinates::{accelerated, add_part, motion_of, part_of, slots};
+use coordinates::{accelerated, add_part, elastic_of, motion_of, part_of, slots};
 use form::{emit_mass_of, inertial, pull_inertial, unlike};
 use truncated::Beside;
 
@@ -63,6 +63,48 @@ pub fn team<S: Scalar>(model: &Model<S>) -> Team {
         Form::Modal(_) => None,
     });
     all.next().unwrap_or_default()
+}
+
+/// Gives the bodies of finite elements to ranks that compute its motions together.
+pub fn set_team<S: Scalar>(model: &mut Model<S>, team: &Team) {
+    for body in &mut model.flexible {
+        if let Form::Finite(own) = &mut body.form {
+            own.team = team.clone();
+        }
+    }
+}
+
+/// lᵀ A r, where A are the derivatives of elastic and viscous forces of finite elements by coordinates, and by their rates,
+/// for two vectors in velocity numbering.
+pub fn strain_products<S: Scalar>(
+    (model, numbering): (&Model<S>, &Numbering),
+    motions: &[BodyMotion<S>],
+    pair: [&[S]; 2],
+) -> [S; 2] {
+    let mut sums = [S::zero(); 2];
+    for body in &model.flexible {
+        if let Form::Finite(own) = &body.form {
+            let moving = (&coordinates(body, motions)[..], &rates(body, motions)[..]);
+            let [l, r] = pair.map(|x| elastic_of(numbering, body, x));
+            let own = finite::strain_products(own, moving, [&l, &r]);
+            sums = [sums[0] + own[0], sums[1] + own[1]];
+        }
+    }
+    sums
+}
+
+/// A model whose finite elements have no strain energy; `None` if there are none.
+pub fn without_strains<S: Scalar>(model: &Model<S>) -> Option<Model<S>> {
+    let is_finite = |body: &FlexibleBody<S>| matches!(body.form, Form::Finite(_));
+    model.flexible.iter().any(is_finite).then(|| {
+        let mut out = model.clone();
+        for body in &mut out.flexible {
+            if let Form::Finite(own) = &mut body.form {
+                *own = finite::without_strains(own);
+            }
+        }
+        out
+    })
 }
 
 /// Adds the terms of flexible bodies to M v̇ − f(q, v) at the accelerations `a`.
