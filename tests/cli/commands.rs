@@ -280,6 +280,41 @@ fn optimising_writes_a_record_and_figures() {
     assert_eq!(history.lines().count() as u64, iterations + 2);
 }
 
+/// A reaction that the motion does not determine has no derivatives: `check` says what `simulate` says.
+#[test]
+fn values_that_are_not_finite_are_not_checked() {
+    let at = scratch();
+    let bar = |place: serde_json::Value, own: [f64; 3]| {
+        serde_json::json!({"mass": 2, "inertia": {"xx": 0.1, "yy": 0.1, "zz": 0.1}, "place": place,
+               "points": {"l": [-0.2, 0, 0], "r": [0.2, 0, 0], "t": own}})
+    };
+    let file = serde_json::json!({
+        "version": 1, "name": "welded",
+        "bodies": {
+            "a": bar(serde_json::json!({"put": "l"}), [0.1, 0.05, 0.0]),
+            "b": bar(serde_json::json!({"put": "l", "at": "a.r"}), [-0.1, 0.05, 0.03])
+        },
+        "joints": {
+            "pin": {"revolute": {"between": ["a", "ground"], "at": [0, 0, 0], "axis": [0, 0, 1]}},
+            "weld": {"weld": {"between": ["b", "a"], "at": "a.r"}},
+            "rod": {"rod": {"between": ["a", "b"], "at": {"a": "t", "b": "t"}}}
+        },
+        "simulation": {"duration": 0.3},
+        "functions": {"F": {"final": {"joint_force": {"joint": "weld", "direction": [0, 1, 0]}}}},
+        "variables": {"m": {"path": "/bodies/b/mass", "lower": 1, "upper": 3}}
+    });
+    std::fs::write(at.path().join("welded.json"), file.to_string()).expect("is written");
+    for command in ["simulate", "check"] {
+        let ran = expect(3, at.path(), &[command, "welded.json"]);
+        assert!(ran.err.contains("\"F\" is NaN"), "{command}: {}", ran.err);
+        assert!(
+            !ran.out.contains("largest relative"),
+            "{command}: {}",
+            ran.out
+        );
+    }
+}
+
 #[test]
 fn the_same_run_gives_the_same_bytes() {
     let at = scratch();

@@ -338,6 +338,7 @@ fn energy_is_looked_at_only_where_it_is_conserved_and_steps_follow_a_tolerance()
         length: 1.0,
         floor: [1.0, 1.0],
         elastic: Default::default(),
+        states: Vec::new(),
     };
     for seed in 0..20 {
         let mut numbers = Numbers(seed);

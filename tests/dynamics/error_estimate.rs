@@ -542,6 +542,11 @@ fn integrals_of_round_off_take_no_more_samples_than_others() {
             json!("dop853"),
         ),
         (
+            "spherical",
+            json!({"square": {"joint_moment": {"joint": "j", "direction": [1, 0, 1]}}}),
+            json!("dop853"),
+        ),
+        (
             "revolute",
             json!({"joint_moment": {"joint": "j", "direction": [0, 0, 1]}}),
             json!({"radau": {"stages": 2}}),

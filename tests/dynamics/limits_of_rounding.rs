@@ -106,6 +106,7 @@ fn rejections_in_a_row_are_bounded() {
         length: 1.0,
         floor: [1.0, 1.0],
         elastic: Default::default(),
+        states: Vec::new(),
     };
     let mut numbers = Numbers(7);
     for tolerance in [1e-4, 1e-9, 1e-13] {

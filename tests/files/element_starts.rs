@@ -48,7 +48,8 @@ fn plates_start_with_their_joints() {
 /// are exact.
 #[test]
 fn a_loop_of_plates_starts_with_one_joint() {
-    let mut document = two(0.01);
+    // So long that the plates bend: energies that are nearly zero have derivatives with few digits.
+    let mut document = two(0.03);
     thick_and_soft(&mut document);
     document["bodies"]["third"] = document["bodies"]["first"].clone();
     document["bodies"]["first"]["place"]["turn"] = upright(1.2);

@@ -63,6 +63,7 @@ mod shell_hinges;
 mod shell_pictures;
 mod smoothed;
 mod stability;
+mod states_of_controllers;
 mod static_faults;
 mod statics;
 mod stationary;

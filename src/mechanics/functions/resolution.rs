@@ -1,6 +1,6 @@
 //! The number of quadrature cells per step that sums over the motion need.
 
-use super::{Function, Instant, Quantity, Reduction, Release, Scene};
+use super::{Function, Instant, Operation, Quantity, Reduction, Release, Scene};
 use crate::integrate::Trajectory;
 use crate::integrate::quadrature::{ADDED, LOBATTO, WEIGHTS};
 use crate::model::Model;
@@ -13,6 +13,7 @@ const NOISE: f64 = 1e3 * f64::EPSILON;
 /// Largest number of cells of a step, and largest factor by which it may grow at once.
 const MOST: f64 = 256.0;
 const GROWTH: f64 = 4.0;
+const ACCELERATION: &str = "m/s²";
 /// Orders of the two quadrature rules of a cell.
 const ORDERS: [f64; 2] = [6.0, 10.0];
 
@@ -152,7 +153,7 @@ fn natural(unit: &str, model: &Model<f64>, run: &Trajectory<f64>) -> f64 {
     match unit {
         "m" => length,
         "m/s" => speed,
-        "m/s²" => square / length,
+        ACCELERATION => square / length,
         "m²/s²" => square,
         "rad" | "1" => 1.0,
         "rad/s" => speed / length,
@@ -160,7 +161,32 @@ fn natural(unit: &str, model: &Model<f64>, run: &Trajectory<f64>) -> f64 {
         "kg m²/s" => mass * speed * length,
         "J" | "N m" => mass * square,
         "N" => mass * square / length,
+        "W" => mass * square * speed / length,
         _ => 0.0,
+    }
+}
+
+/// The size below which a quantity is zero but for round-off, over `goal`: as accurate as its unit in this motion. Inside steps
+/// accelerations are less accurate than the motion. Zero if it is not known.
+fn least(of: &Quantity<f64>, at: (&Model<f64>, &Trajectory<f64>), goal: f64) -> f64 {
+    let (operation, of) = match of {
+        Quantity::Of(instant) => {
+            let size = natural(instant.unit(), at.0, at.1);
+            return match instant.unit() {
+                ACCELERATION => size,
+                _ => NOISE / goal * size,
+            };
+        }
+        Quantity::Combined { operation, of } => (operation, of),
+    };
+    let mut own = of.iter().map(|own| least(own, at, goal));
+    match operation {
+        Operation::Sum | Operation::Difference | Operation::Absolute { .. } => {
+            own.fold(0.0, f64::max)
+        }
+        Operation::Square => own.next().map_or(0.0, |own| own * own),
+        Operation::Product => own.product(),
+        Operation::Quotient | Operation::Rate => 0.0,
     }
 }
 
@@ -226,16 +252,14 @@ fn sum_over(
     };
     let weighed = terms.iter().zip(nodes);
     let total: f64 = weighed.map(|(x, &k)| x.abs() * run.weights[k]).sum();
-    // A quantity that is zero but for round-off is as accurate as its unit in this scene. Inside steps accelerations are
-    // less accurate than the motion.
-    let unit = of.unit();
-    let unit = unit.as_str();
-    let least = match (unit, rho) {
-        ("m/s²", rho) => rho.unwrap_or(1.0) * natural(unit, &scene.model, run),
-        (_, None) => NOISE / goal * natural(unit, &scene.model, run),
+    let floor = match (of, rho) {
+        (_, None) => least(of, (&scene.model, run), goal),
+        (Quantity::Of(instant), Some(rho)) if instant.unit() == ACCELERATION => {
+            rho * natural(ACCELERATION, &scene.model, run)
+        }
         (_, Some(_)) => 0.0,
     };
-    let total = total.max(least);
+    let total = total.max(floor);
     let scale = if total > 0.0 { 1.0 / total } else { 0.0 };
     Sum {
         sizes: terms.iter().map(|x| x.abs() * scale).collect(),

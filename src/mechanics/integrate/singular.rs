@@ -5,7 +5,7 @@
 //! round-off divided by x, x² and x³. So no step may end too close. If the motion passes a singular
 //! position, a step leaps over it.
 
-use super::scale::Scale;
+use super::scale::{Scale, Speeds};
 use crate::linalg::SolveScalar;
 use crate::system::Numbering;
 use crate::system::accelerations::Accelerations;
@@ -58,7 +58,7 @@ impl<S: SolveScalar> Steadiness<S> {
     /// The steadiness where `field` is evaluated and factorised, relative to the scene's scale.
     pub fn of(&mut self, field: &mut Accelerations<S>, scale: &Scale) -> f64 {
         let nv = field.numbering.velocities();
-        let speeds = [scale.length, 1.0];
+        let speeds = Speeds::without_states([scale.length, 1.0]);
         let mut sum = 0.0;
         for probe in 0..PROBES {
             let (upper, lower) = self.rhs.split_at_mut(nv);
@@ -71,7 +71,7 @@ impl<S: SolveScalar> Steadiness<S> {
                 *rate = S::from(unit * irregular(PROBES * i + probe));
             }
             field.solve(&mut self.rhs);
-            sum += scale.square(field.numbering, &self.still, &self.rhs[..nv], speeds);
+            sum += scale.square(field.numbering, &self.still, &self.rhs[..nv], &speeds);
         }
         (PROBES as f64 / sum).sqrt()
     }

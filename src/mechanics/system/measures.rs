@@ -71,7 +71,19 @@ struct Virtual<S> {
 }
 
 impl<S: Scalar> Wrench<S> {
-    fn virtual_motion(&self, a: &JointSide<S>, b: &JointSide<S>) -> Virtual<S> {
+    /// The side with the joint's point on the body, which a drive does not move on it.
+    fn side<'a>(
+        &self,
+        joint: &Joint<S>,
+        (a, b): (&JointSide<'a, S>, &JointSide<'a, S>),
+    ) -> JointSide<'a, S> {
+        match self.on {
+            End::A => a.clone(),
+            End::B => JointSide::fixed(b.motion, joint.frame_b),
+        }
+    }
+
+    fn virtual_motion(&self, a: &JointSide<S>, point: Vec3<S>) -> Virtual<S> {
         let rotation = &a.motion.rotation;
         let direction = match self.axes {
             Axes::Ground => self.direction,
@@ -86,10 +98,6 @@ impl<S: Scalar> Wrench<S> {
                 omega: none,
             },
             WrenchPart::Moment => {
-                let point = match self.on {
-                    End::A => a.point(),
-                    End::B => b.point(),
-                };
                 let arm = a.motion.position - point;
                 Virtual {
                     direction,
@@ -114,7 +122,7 @@ impl<S: Scalar> Wrench<S> {
         let joint = &at.model.joints[self.joint];
         let ground = BodyMotion::ground();
         let (a, b) = sides(joint, at.motions, &ground, at.time);
-        let w = self.virtual_motion(&a, &b);
+        let w = self.virtual_motion(&a, self.side(joint, (&a, &b)).point());
         let powers = joint
             .rows()
             .map(|row| along(&constraint::gradient(row, &a, &b), &w));
@@ -150,7 +158,7 @@ impl Wrench<f64> {
         let joint = &at.model.joints[self.joint];
         let ground = BodyMotion::ground();
         let (a, b) = sides(joint, at.motions, &ground, at.time);
-        let w = self.virtual_motion(&a, &b);
+        let w = self.virtual_motion(&a, self.side(joint, (&a, &b)).point());
         let weight = weight * self.sign();
         let (mut force, mut torque) = (Vec3::zeros(), Vec3::zeros());
         for ((row, &l), by) in joint.rows().zip(lambda).zip(by_lambda) {
@@ -182,11 +190,15 @@ impl Wrench<f64> {
             by_a.theta += torque.cross(&w.omega);
             let arm = force.cross(&w.direction);
             by_a.position += arm;
-            let (side, by) = match self.on {
-                End::A => (&a, &mut by_a),
-                End::B => (&b, &mut by_b),
+            let side = self.side(joint, (&a, &b));
+            let own = &mut out.model.joints[self.joint];
+            let (by, frame) = match self.on {
+                // A point of a flexible body moves with it.
+                End::A => (&mut by_a, None),
+                End::B => (&mut by_b, Some(&mut own.frame_b)),
             };
-            pull_point(side, &-arm, by);
+            let local = pull_point(&side, &-arm, by);
+            frame.unwrap_or(&mut by.frame).point += local;
         }
         match self.axes {
             Axes::Ground => own.direction += direction,
@@ -200,12 +212,12 @@ impl Wrench<f64> {
     }
 }
 
-/// Adds the pull-back of a cotangent of the joint's point on a body.
-fn pull_point(side: &JointSide<f64>, x: &Vec3<f64>, by: &mut SideCotangent<f64>) {
+/// Adds the pull-back of a cotangent of the joint's point on a body by its motion; that by the place on it.
+fn pull_point(side: &JointSide<f64>, x: &Vec3<f64>, by: &mut SideCotangent<f64>) -> Vec3<f64> {
     let local = Mat3::tr_mul(&side.motion.rotation, x);
     by.position += x;
     by.theta += side.frame.point.cross(&local);
-    by.frame.point += local;
+    local
 }
 
 /// The sides of a joint without its drives.

@@ -2,8 +2,11 @@
 //! made give the same values and gradients as the scene as written.
 
 use super::{differences, is_planar, obstacle, parse, run, settings, unlowered};
+use crate::reference::documents::{problem as parsed, unlowered_values, value, values};
+use crate::reference::gradients::gradients_are_exact;
 use crate::reference::models::Numbers;
 
+use flexbody_mathematics::math::Vec3;
 use flexbody_mechanics::integrate::{Method, Spacing};
 use flexbody_problem::Problem;
 use serde_json::Value;
@@ -236,4 +239,79 @@ fn what_hinges_share_is_refused_and_the_rest_is_right() {
     assert!(at.function(0).value.is_nan());
     let told = flexbody_driver::not_finite::value(&shared, &at, 0, f64::NAN);
     assert!(told.contains("shares it with others"), "{told}");
+}
+
+/// The moment on a body is about the joint's point on it, where a slide has moved the points apart and whichever body is the first,
+/// also where a drive moves them.
+#[test]
+fn moments_are_about_the_point_of_their_body() {
+    let function = |part: &str, on: &str, direction: [f64; 3]| json!({"final": {part: {"joint": "slide", "direction": direction, "on": on}}});
+    for driven in [true, false] {
+        let of = |between: [&str; 2], sign: f64| {
+            let mut file = json!({
+                "version": 1, "name": "slide", "gravity": [0.3, -9.81, 1.1],
+                "bodies": {
+                    "frame": {"mass": 3, "inertia": {"xx": 1, "yy": 1, "zz": 1}},
+                    "carriage": {"mass": 2, "inertia": {"xx": 0.3, "yy": 0.4, "zz": 0.5}, "centre_of_mass": [0.1, 0.2, -0.1]}
+                },
+                "joints": {
+                    "hinge": {"revolute": {"between": ["frame", "ground"], "at": [0, 0, 0], "axis": [0, 0, 1]}},
+                    "slide": {"prismatic": {"between": between, "at": [0.2, 0.1, 0], "axis": [1, 0.2, 0.1]}}
+                },
+                "simulation": {"duration": 0.4, "tolerance": 1e-10}, "functions": {},
+                "variables": {
+                    "mass": {"path": "/bodies/carriage/mass", "lower": 1, "upper": 3},
+                    "at": {"path": "/joints/slide/prismatic/at/1", "lower": 0, "upper": 1}
+                }
+            });
+            match driven {
+                true => {
+                    file["drives"] = json!({"push": {"joint": "slide", "slide": {"polynomial": [0.0, sign, sign]}}});
+                }
+                false => {
+                    file["joints"]["slide"]["prismatic"]["start"] =
+                        json!({"slide": {"displacement": 0, "rate": sign}});
+                }
+            }
+            for on in ["frame", "carriage"] {
+                for (axis, k) in ["x", "y", "z"].into_iter().zip(0..) {
+                    let mut direction = [0.0; 3];
+                    direction[k] = 1.0;
+                    file["functions"][format!("{on} moment {axis}")] =
+                        function("joint_moment", on, direction);
+                    file["functions"][format!("{on} force {axis}")] =
+                        function("joint_force", on, direction);
+                }
+            }
+            file
+        };
+        let (one, other) = (
+            of(["carriage", "frame"], 1.0),
+            of(["frame", "carriage"], -1.0),
+        );
+        let found = values(&one);
+        for (a, b) in found.iter().zip(values(&other)) {
+            assert!(
+                (a - b).abs() < 1e-6 * a.abs().max(10.0),
+                "{driven}: {a} {b}"
+            );
+        }
+        for (a, b) in found.iter().zip(unlowered_values(&one)) {
+            assert!(
+                (a - b).abs() < 1e-6 * a.abs().max(10.0),
+                "{driven}: {a} {b}"
+            );
+        }
+        // The bodies act on each other with one wrench: moments about two points differ by F × the way between them.
+        let vector =
+            |of: &str| Vec3::from_fn(|k, _| value(&one, &format!("{of} {}", ["x", "y", "z"][k])));
+        let [force, other_force] = ["carriage force", "frame force"].map(vector);
+        let [moment, other_moment] = ["carriage moment", "frame moment"].map(vector);
+        assert!((force + other_force).norm() < 1e-9 * force.norm());
+        let along = moment + other_moment;
+        assert!(along.norm() > 1.0, "{along}");
+        assert!(along.dot(&force).abs() < 1e-6 * along.norm() * force.norm());
+        let problem = parsed(&one);
+        gradients_are_exact(&problem, &json!(driven));
+    }
 }

@@ -354,7 +354,8 @@ fn open<S: SolveScalar>(
     (start, h): (S, S),
 ) -> f64 {
     let speeds = scale.speeds(stepper.field.numbering, from.v, &stepper.data.v_raw);
-    let [a, b] = LOOKED_AT.map(|theta| stepper.open(from, (h, theta), start + h * theta, speeds));
+    let [a, b] =
+        LOOKED_AT.map(|theta| stepper.open(from, (h, theta), start + h * theta, speeds.of_bodies));
     if a.is_nan() || a > b { a } else { b }
 }
 
@@ -363,7 +364,7 @@ fn open<S: SolveScalar>(
 fn error<S: SolveScalar>(stepper: &mut Stepper<S>, scale: &Scale, from: NodeView<S>, h: S) -> f64 {
     let numbering = stepper.field.numbering;
     let speeds = scale.speeds(numbering, from.v, &stepper.data.v_raw);
-    let [e5, e3] = stepper.errors(h, |q, v| scale.square(numbering, q, v, speeds));
+    let [e5, e3] = stepper.errors(h, |q, v| scale.square(numbering, q, v, &speeds));
     let denominator = e5 + 0.01 * e3;
     if denominator == 0.0 {
         0.0
@@ -382,7 +383,7 @@ fn unweighted<S: SolveScalar>(
 ) -> f64 {
     let numbering = stepper.field.numbering;
     let speeds = scale.speeds(numbering, from.v, &stepper.data.v_raw);
-    let [without, with] = stepper.changes(h, |q, v| scale.square(numbering, q, v, speeds));
+    let [without, with] = stepper.changes(h, |q, v| scale.square(numbering, q, v, &speeds));
     match without > UNSEEN * UNSEEN * with {
         true => without.sqrt(),
         false => 0.0,
@@ -398,7 +399,7 @@ fn leaves_branch<S: SolveScalar>(
 ) -> bool {
     let numbering = stepper.field.numbering;
     let speeds = scale.speeds(numbering, from.v, &stepper.data.v_raw);
-    let lost = stepper.velocity_correction(|q, v| scale.square(numbering, q, v, speeds));
+    let lost = stepper.velocity_correction(|q, v| scale.square(numbering, q, v, &speeds));
     lost.sqrt() > LOST
 }
 

@@ -135,7 +135,7 @@ impl Stiffness {
     ) -> bool {
         let numbering = stepper.field.numbering;
         let speeds = scale.speeds(numbering, to.v, &stepper.data.v_raw);
-        let measure = |q: &[S], v: &[S]| scale.square(numbering, q, v, speeds);
+        let measure = |q: &[S], v: &[S]| scale.square(numbering, q, v, &speeds);
         let [dy, df] = stepper.last_stage(to, measure);
         // A ratio of round-off does not estimate λ.
         let known = dy > NOISE * NOISE;

@@ -15,7 +15,7 @@
 
 use super::record::NodeView;
 use super::tableau::ORDER;
-use crate::integrate::scale::Scale;
+use crate::integrate::scale::{Scale, Speeds};
 use crate::integrate::singular::irregular;
 use crate::linalg::SolveScalar;
 use crate::model::Model;
@@ -200,7 +200,9 @@ impl<'a, S: SolveScalar> Tangent<'a, S> {
             By::Positions => [scale.length, 1.0],
             By::Velocities => scale.floor,
         };
-        let size = scale.square(numbering, &still, along, speeds).sqrt();
+        let size = scale
+            .square(numbering, &still, along, &Speeds::without_states(speeds))
+            .sqrt();
         if size == 0.0 || !size.is_finite() {
             return;
         }

@@ -5,7 +5,7 @@ use super::predict::dense;
 use super::radau::Scheme;
 use super::stage_factors::StageFactors;
 use super::stage_newton::StageNewton;
-use crate::integrate::scale::Scale;
+use crate::integrate::scale::{Scale, Speeds};
 use crate::integrate::work::WorkCounts;
 use crate::linalg::SolveScalar;
 use crate::model::Model;
@@ -84,7 +84,7 @@ impl<'a> Estimate<'a> {
         let (v, nv) = (&self.from.v, self.from.v.len());
         let end = &self.stages[self.stages.len() - 1].v;
         let speeds = scale.speeds(numbering, &v[..], end);
-        let size = |x: &[f64]| scale.tangent_square(&x[..nv], &x[nv..], h, speeds).sqrt();
+        let size = |x: &[f64]| scale.tangent_square(&x[..nv], &x[nv..], h, &speeds).sqrt();
         let mut error = size(&self.filtered[..2 * nv]);
         if let Some(noise) = newton.noise().map(size) {
             // Round-off in the stages does not depend on the step size.
@@ -93,7 +93,7 @@ impl<'a> Estimate<'a> {
         if (self.model.joints.iter()).all(|joint| joint.drives.is_empty()) {
             return error;
         }
-        error.max(self.drift(h, (scale, speeds)))
+        error.max(self.drift(h, (scale, &speeds)))
     }
 
     /// Sets the estimated error (δy, h δv) of a step of size h from its start and its stages, filtered by the real
@@ -108,7 +108,7 @@ impl<'a> Estimate<'a> {
 
     /// Violation of the constraints at the middle of a step, relative to the scene's scale. The
     /// stages satisfy them. For a prescribed motion this is the only visible error.
-    fn drift(&mut self, h: f64, (scale, speeds): (&Scale, [f64; 2])) -> f64 {
+    fn drift(&mut self, h: f64, (scale, speeds): (&Scale, &Speeds)) -> f64 {
         let (model, numbering) = (self.model, self.numbering);
         let middle = &mut self.middle;
         dense(self.scheme, &self.from, &self.stages, h, 0.5, middle);
@@ -120,7 +120,7 @@ impl<'a> Estimate<'a> {
         joints::values(&at, &mut self.rows);
         let open = largest(&self.rows) / scale.length;
         joints::rates(&at, &mut self.rows);
-        open.max(largest(&self.rows) / speeds[0])
+        open.max(largest(&self.rows) / speeds.of_bodies[0])
     }
 }
 

@@ -92,7 +92,7 @@ impl<'a, S: SolveScalar> TangentError<'a, S> {
         let speeds = scale.speeds(numbering, &from.v, &end.v);
         // Velocities of vibrations count by the positions that they move.
         let still = vec![0.0; nv];
-        let size = |y: &[f64]| scale.tangent_square(y, &still, h, speeds).sqrt();
+        let size = |y: &[f64]| scale.tangent_square(y, &still, h, &speeds).sqrt();
         let of_state = |stage: &Stage<S>| {
             let part = |all: &[S]| -> Vec<f64> { all.iter().map(|x| x.infinitesimal()).collect() };
             let real: Vec<f64> = stage.q.iter().map(|x| x.re()).collect();

@@ -186,7 +186,7 @@ impl Solver<'_> {
             Some(own) => own.at(),
             None => At::rest(self.layout, self.model, found, turning),
         };
-        let matrices = Matrices::new(at, damped);
+        let matrices = Matrices::new(at, damped).with_strains(at, damped);
         let allowed = at.freedom();
         let scales = (found.rate.sqrt(), (FREE * found.rate).sqrt()..f64::INFINITY);
         // An aggregate needs one.

@@ -91,8 +91,7 @@ fn orthonormalise(all: &mut [[Vector; 2]]) -> Option<()> {
 
 /// Q(s) x = (K + s D + s² M) x, or its transpose.
 fn whole(matrices: &Matrices, x: &[Complex64], s: Complex64, transposed: bool) -> Vector {
-    let mut out = product(&matrices.stiffness, x, transposed);
-    let damped = product(&matrices.damping, x, transposed);
+    let [mut out, damped] = matrices.products(x, transposed);
     let heavy = product(&matrices.mass, x, transposed);
     for (out, (d, m)) in out.iter_mut().zip(damped.iter().zip(&heavy)) {
         *out += s * (d + s * m);

@@ -80,7 +80,7 @@ impl<'a, S: Scalar> InstantState<'a, S> {
 /// The spectrum up to a vibration.
 fn spectrum(state: &InstantState<f64>, number: usize) -> Result<Spectrum, AssemblyFailure> {
     let at = state.at();
-    let matrices = Matrices::new(at, true);
+    let matrices = Matrices::new(at, true).with_strains(at, true);
     let rate = rate(state);
     let scales = (rate.sqrt(), (FREE * rate).sqrt()..f64::INFINITY);
     let count = number + 1 + SPARE;

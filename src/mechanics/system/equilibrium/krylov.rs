@@ -25,6 +25,8 @@ const GROWTH: usize = 2;
 const LARGEST: usize = 800;
 /// Relative change of eigenvalues from one dimension to the next by which they have converged.
 const CONVERGED: f64 = 1e-6;
+/// Change that may be round-off, if it does not fall.
+const NOISY: f64 = 1e-4;
 /// σ, as a part of the largest eigenvalue that is wanted; and eigenvalues that count, relative to it.
 const PART: f64 = 0.25;
 const FREE: f64 = 1e-5;
@@ -223,6 +225,7 @@ fn search(
     let mut space = Space::new(matrices, shift, allowed)?;
     let mut dimension = DIMENSION * (count + STARTS);
     let mut before: Vec<Complex64> = Vec::new();
+    let mut changed = f64::INFINITY;
     loop {
         let more = space.grow(dimension.min(2 * allowed));
         let (values, diverging) = space.values(sizes).ok_or(AssemblyFailure::Singular)?;
@@ -233,11 +236,16 @@ fn search(
                 all: true,
             });
         }
-        let near = |(a, b): (&Complex64, &Complex64)| (a - b).norm() <= CONVERGED * b.norm();
-        let stays = values.len() >= count
-            && before.len() >= count
-            && before.iter().zip(&values).take(count).all(near);
-        if stays {
+        let change = match values.len() >= count && before.len() >= count {
+            true => {
+                let both = before.iter().zip(&values).take(count);
+                let changes = both.map(|(a, b)| (a - b).norm() / b.norm());
+                changes.fold(0.0, f64::max)
+            }
+            false => f64::INFINITY,
+        };
+        // Where a change falls no more, solutions have round-off of the stiffness. Eigenpairs are refined later.
+        if change <= CONVERGED || change <= NOISY && change >= changed {
             return Ok(Found {
                 values: values[..count].to_vec(),
                 diverging,
@@ -248,7 +256,7 @@ fn search(
             let why = format!("{count} modes do not converge");
             return Err(AssemblyFailure::NoModes { why });
         }
-        before = values;
+        (before, changed) = (values, change);
         dimension *= GROWTH;
     }
 }

@@ -14,13 +14,13 @@ use crate::math::{Complex64, Scalar};
 use crate::model::Model;
 use crate::system::bodies::BodyMotion;
 use crate::system::emit_bodies::{Rates, emit_force_balance};
-use crate::system::flexible;
+use crate::system::flexible::{self, StrainForces};
 use crate::system::in_motion::InMotion;
 use crate::system::joints;
 use crate::system::kkt::{emit_gradients, emit_reaction_jacobian, emit_transposed_gradients};
 use crate::system::loads::{self, LoadEntries};
 use crate::system::numbering::Numbering;
-use crate::system::reduce::emit_reduced;
+use crate::system::reduce::{self, emit_reduced};
 use crate::system::redundant_rows::RedundantRows;
 
 /// A model at a state, about which motions are small.
@@ -181,6 +181,74 @@ pub(super) struct Matrices {
     /// Motions that are left out of all products, and their products with the inertia, of which each has 1 with its motion.
     pub left_out: Vec<[Vec<f64>; 2]>,
     pattern: Pattern,
+    /// K and D without the strain energies of finite elements, and these.
+    by_strains: Option<ByStrains>,
+}
+
+/// K and D with less round-off than by their entries.
+struct ByStrains {
+    stiffness: SparseMatrix<f64>,
+    damping: SparseMatrix<f64>,
+    /// Whether D counts.
+    damped: bool,
+    forces: StrainForces,
+    numbering: Numbering,
+}
+
+/// A matrix of the pencil.
+fn assembled(at: At<f64>, weights: Weights<f64>, pattern: &Pattern) -> SparseMatrix<f64> {
+    let mut matrix = SparseMatrix::new(pattern.clone());
+    matrix.assemble(|to| emit_pencil(at, weights, to));
+    matrix
+}
+
+impl ByStrains {
+    /// Those at a state; `None` if it has no finite elements.
+    fn new(at: At<f64>, pattern: &Pattern, damped: bool) -> Option<Self> {
+        let without = flexible::without_strains(at.model)?;
+        let rest = At {
+            model: &without,
+            ..at
+        };
+        let ([speeds, _], _) = at.motion();
+        let mut motions = Vec::new();
+        BodyMotion::all(at.numbering, at.q, &speeds, &mut motions);
+        let weights = |stiffness: f64, damping: f64| Weights {
+            stiffness,
+            damping,
+            mass: 0.0,
+        };
+        Some(Self {
+            forces: StrainForces::new(at.model, at.numbering, &motions)?,
+            stiffness: assembled(rest, weights(1.0, 0.0), pattern),
+            damping: assembled(rest, weights(0.0, f64::from(u8::from(damped))), pattern),
+            damped,
+            numbering: at.numbering.clone(),
+        })
+    }
+
+    fn products(&self, x: &[Complex64], transposed: bool) -> [Vec<Complex64>; 2] {
+        let mut out = [&self.stiffness, &self.damping].map(|own| product(own, x, transposed));
+        let (n, nv) = (self.numbering.unknowns(), self.numbering.velocities());
+        let unit = Complex64::new(1.0, 0.0);
+        let parts: [(fn(&Complex64) -> f64, Complex64); 2] =
+            [(|x| x.re, unit), (|x| x.im, Complex64::new(0.0, 1.0))];
+        for (part, unit) in parts {
+            let mut along: Vec<f64> = x[..n].iter().map(part).collect();
+            along.resize(nv, 0.0);
+            reduce::expand(&self.numbering, 1, &mut along);
+            let [mut elastic, mut viscous] = [0, 1].map(|_| vec![0.0; nv]);
+            (self.forces).add_products(&along, [&mut elastic, &mut viscous]);
+            if !self.damped {
+                viscous.fill(0.0);
+            }
+            for (out, own) in out.iter_mut().zip([&mut elastic, &mut viscous]) {
+                reduce::compress(&self.numbering, 1, own);
+                (out.iter_mut().zip(&own[..n])).for_each(|(out, x)| *out += unit * x);
+            }
+        }
+        out
+    }
 }
 
 impl Matrices {
@@ -191,14 +259,12 @@ impl Matrices {
             emit_pencil(at, Weights::at(1.0), to);
         });
         let of = |stiffness: f64, damping: f64, mass: f64| {
-            let mut matrix = SparseMatrix::new(pattern.clone());
             let weights = Weights {
                 stiffness,
                 damping,
                 mass,
             };
-            matrix.assemble(|to| emit_pencil(at, weights, to));
-            matrix
+            assembled(at, weights, &pattern)
         };
         Self {
             unknowns: at.numbering.unknowns(),
@@ -206,7 +272,22 @@ impl Matrices {
             damping: of(0.0, if damped { 1.0 } else { 0.0 }, 0.0),
             mass: of(0.0, 0.0, 1.0),
             left_out: Vec::new(),
+            by_strains: None,
             pattern,
+        }
+    }
+
+    /// With products of K and D that take the strain energies of finite elements by strains.
+    pub(super) fn with_strains(mut self, at: At<f64>, damped: bool) -> Self {
+        self.by_strains = ByStrains::new(at, &self.pattern, damped);
+        self
+    }
+
+    /// K x and D x, or those of the transposes.
+    pub(super) fn products(&self, x: &[Complex64], transposed: bool) -> [Vec<Complex64>; 2] {
+        match &self.by_strains {
+            Some(own) => own.products(x, transposed),
+            None => [&self.stiffness, &self.damping].map(|own| product(own, x, transposed)),
         }
     }
 

@@ -6,6 +6,7 @@ mod coordinates;
 mod displacement;
 mod form;
 mod held;
+mod strain_forces;
 mod truncated;
 
 pub use coordinates::{
@@ -18,6 +19,8 @@ pub use held::{
     axial_strains, held, inside_out, of_lateral_moment, pull_energies, pull_momentum,
     pull_strain_energy, pull_stress_ratios, strain_energy, stress_ratios, turned,
 };
+
+pub use strain_forces::StrainForces;
 
 use super::bodies::{self, BodyMotion};
 use super::flexing::{self, Flexing, FlexingCotangent, Generalised};
