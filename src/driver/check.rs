@@ -88,8 +88,10 @@ impl CheckedDerivative {
     /// times the terms. Or they are below 1e-10 of these, and motions that differ by round-off change more than a hundredth
     /// of the derivative.
     pub fn is_round_off(&self) -> bool {
-        let most = self.adjoint.abs().max(self.complex_step.abs());
-        most <= self.round_off() || most <= NOTHING * self.terms && self.noise() > UNCERTAIN
+        // Comparisons with NaN are false.
+        let below = |most: f64| self.adjoint.abs() <= most && self.complex_step.abs() <= most;
+        let moved = (self.in_use - self.adjoint).abs();
+        below(self.round_off()) || below(NOTHING * self.terms) && below(moved / UNCERTAIN)
     }
 
     /// Whether the derivative is below 1e-3 of its terms and its two values differ by at most their
@@ -425,6 +427,9 @@ mod tests {
         };
         assert!(nearly(2e-12).is_round_off());
         assert!(!nearly(3e-12).is_round_off() && nearly(3e-12).verdict(1e-10) == Verdict::Differ);
+        for (a, b) in [(f64::NAN, 0.0), (0.0, f64::NAN)] {
+            assert_eq!(pair(a, b).verdict(1e-10), Verdict::Differ);
+        }
         let of_nothing = CheckedDerivative {
             in_use: 1e-9,
             ..pair(1e-9 + 1e-18, 0.0)

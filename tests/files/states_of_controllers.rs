@@ -2,7 +2,8 @@
 //! every method, in other units, with and without derivatives.
 
 use super::machines_at_rest::hinge;
-use crate::reference::documents::{in_units, values};
+use crate::reference::documents::{in_units, problem as parsed, values};
+use crate::reference::gradients::gradients_are_exact;
 use serde_json::Value;
 use std::f64::consts::PI;
 
@@ -154,4 +155,55 @@ fn states_that_stay_zero_cost_nothing() {
     let follows =
         json!({"reference": {"polynomial": [0, 1]}, "proportional": 1e3, "motor": {"lag": 0.1}});
     assert!(steps(follows) < 60);
+}
+
+/// Two links with an integral on a hinge that rests far from where it was placed. Its vibrations do not depend on which body is the
+/// first, and without a gain of the integral they are those of a motor with the same effort.
+#[test]
+fn vibrations_about_a_turned_hinge_are_those_of_its_motor() {
+    let of = |between: [&str; 2], sign: f64, integral: Value, forward: f64| {
+        let mut servo = json!({
+            "joint": "knee", "reference": 0.8 * sign, "proportional": 50, "derivative": 2, "feed_forward": forward
+        });
+        if !integral.is_null() {
+            servo["integral"] = integral;
+        }
+        let bar = |length: f64| json!({"box": {"size": [length, 0.1, 0.1]}});
+        json!({
+            "version": 1, "name": "two", "gravity": [0.7, -9.81, 0.4], "analysis": "rest",
+            "bodies": {
+                "thigh": {"shape": bar(0.4), "mass": 2, "points": {"e": [0.2, 0, 0]}, "place": {"at": [0.2, 0, 0]}},
+                "shank": {"shape": bar(0.5), "mass": 1, "points": {"a": [-0.25, 0, 0]}, "place": {"put": "a", "at": "thigh.e"}}
+            },
+            "joints": {
+                "hip": hinge(["thigh", "ground"], json!([0, 0, 0])),
+                "knee": {"revolute": {"between": between, "at": "shank.a", "axis": [0, 1, 1]}}
+            },
+            "loads": {
+                "spring": {"torsion_spring": {"joint": "hip", "stiffness": 100}},
+                "servo": {"controller": servo}
+            },
+            "functions": {
+                "f1": {"frequency": {"mode": 1, "damped": true}}, "z1": {"damping_ratio": {"mode": 1}},
+                "f2": {"frequency": {"mode": 2, "damped": true}},
+                "effort": {"final": {"effort": {"load": "servo"}}}
+            },
+            "variables": {"mass": {"path": "/bodies/shank/mass", "lower": 0.5, "upper": 2}}
+        })
+    };
+    let near = |a: &[f64], b: &[f64], part: f64| {
+        for (a, b) in a.iter().zip(b) {
+            assert!((a - b).abs() < part * b.abs(), "{a} {b}");
+        }
+    };
+    let first = ["shank", "thigh"];
+    let with = values(&of(first, 1.0, json!(100), 0.0));
+    let other = values(&of(["thigh", "shank"], -1.0, json!(100), 0.0));
+    near(&other[..3], &with[..3], 1e-8);
+    let document = of(first, 1.0, json!(100), 0.0);
+    gradients_are_exact(&parsed(&document), &json!("a turned hinge"));
+    // A weak integral only holds the effort.
+    let weak = values(&of(first, 1.0, json!(1e-7), 0.0));
+    let motor = values(&of(first, 1.0, Value::Null, weak[3]));
+    near(&weak[..3], &motor[..3], 1e-6);
 }

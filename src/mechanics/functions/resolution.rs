@@ -168,8 +168,8 @@ fn natural(unit: &str, model: &Model<f64>, run: &Trajectory<f64>) -> f64 {
 
 /// The size below which a quantity is zero but for round-off, over `goal`: as accurate as its unit in this motion. Inside steps
 /// accelerations are less accurate than the motion. Zero if it is not known.
-fn least(of: &Quantity<f64>, at: (&Model<f64>, &Trajectory<f64>), goal: f64) -> f64 {
-    let (operation, of) = match of {
+fn least(whole: &Quantity<f64>, at: (&Model<f64>, &Trajectory<f64>), goal: f64) -> f64 {
+    let (operation, of) = match whole {
         Quantity::Of(instant) => {
             let size = natural(instant.unit(), at.0, at.1);
             return match instant.unit() {
@@ -185,8 +185,13 @@ fn least(of: &Quantity<f64>, at: (&Model<f64>, &Trajectory<f64>), goal: f64) -> 
             own.fold(0.0, f64::max)
         }
         Operation::Square => own.next().map_or(0.0, |own| own * own),
-        Operation::Product => own.product(),
-        Operation::Quotient | Operation::Rate => 0.0,
+        Operation::Product => {
+            let size = natural(&whole.unit(), at.0, at.1);
+            own.product::<f64>().max(NOISE / goal * size)
+        }
+        // A difference of round-off over the distance of nodes.
+        Operation::Rate => own.next().unwrap_or(0.0) * at.1.last() as f64 / at.1.duration,
+        Operation::Quotient => 0.0,
     }
 }
 
@@ -254,7 +259,7 @@ fn sum_over(
     let total: f64 = weighed.map(|(x, &k)| x.abs() * run.weights[k]).sum();
     let floor = match (of, rho) {
         (_, None) => least(of, (&scene.model, run), goal),
-        (Quantity::Of(instant), Some(rho)) if instant.unit() == ACCELERATION => {
+        (of, Some(rho)) if of.unit() == ACCELERATION => {
             rho * natural(ACCELERATION, &scene.model, run)
         }
         (_, Some(_)) => 0.0,

@@ -22,6 +22,8 @@ const ITERATIONS: usize = 8;
 const REFINEMENTS: usize = 2;
 /// Distance of σ from the eigenvalue, relative to it.
 const ASIDE: f64 = 1e-9;
+/// Relative distance up to which an eigenvector is that of the eigenvalue from which it is sought.
+const NEAR: f64 = 1e-3;
 /// Relative distance of eigenvalues that form a cluster.
 const CLUSTER: f64 = 1e-6;
 /// Most iterations for the eigenvalues of a small matrix.
@@ -145,7 +147,11 @@ impl Shifted<'_> {
                     *x += part * *x - change;
                 }
             }
-            let rate = dot(left, &slope(self.matrices, right, *s, false));
+            // D by strains, as in the residual.
+            let [_, mut change] = self.matrices.products(right, false);
+            let heavy = product(&self.matrices.mass, right, false);
+            (change.iter_mut().zip(&heavy)).for_each(|(d, m)| *d += *s * 2.0 * m);
+            let rate = dot(left, &change);
             *s -= dot(left, &whole(self.matrices, right, *s, false)) / rate;
             left.iter_mut().for_each(|x| *x /= rate);
         }
@@ -193,7 +199,16 @@ pub(super) fn clusters(
             (left.into_iter()).partition(|other| (other - first).norm() <= CLUSTER * first.norm());
         left = others;
         let own: Vec<Complex64> = std::iter::once(first).chain(near).collect();
-        all.push(cluster(matrices, &own).ok_or(AssemblyFailure::Singular)?);
+        let found = cluster(matrices, &own).ok_or(AssemblyFailure::Singular)?;
+        let near = |value: &Complex64| {
+            own.iter()
+                .any(|own| (own - value).norm() <= NEAR * own.norm())
+        };
+        if !found.values.iter().all(near) {
+            let why = "modes do not converge".into();
+            return Err(AssemblyFailure::NoModes { why });
+        }
+        all.push(found);
     }
     Ok(all)
 }

@@ -25,11 +25,14 @@ const GROWTH: usize = 2;
 const LARGEST: usize = 800;
 /// Relative change of eigenvalues from one dimension to the next by which they have converged.
 const CONVERGED: f64 = 1e-6;
-/// Change that may be round-off, if it does not fall.
-const NOISY: f64 = 1e-4;
+/// Vibrations whose imaginary part is a smaller part of their rate are round-off of equal real rates.
+const OSCILLATES: f64 = 1e-4;
 /// σ, as a part of the largest eigenvalue that is wanted; and eigenvalues that count, relative to it.
 const PART: f64 = 0.25;
 const FREE: f64 = 1e-5;
+/// Most searches by a shift of the vibrations found before; and the part of their reach below which another one follows.
+const SEARCHES: usize = 4;
+const NEARER: f64 = 0.1;
 /// Part of |s| by which a vibration may grow by round-off.
 pub(super) const GROWS: f64 = 1e-6;
 
@@ -181,7 +184,7 @@ impl<'a> Space<'a> {
         let positive = all.iter().filter(|s| s.im == 0.0 && s.re > 0.0);
         let mut diverging: Vec<f64> = positive.map(|s| s.re).collect();
         diverging.sort_by(f64::total_cmp);
-        all.retain(|s| s.im > 0.0);
+        all.retain(|s| s.im > OSCILLATES * s.norm());
         all.sort_by(|a, b| a.norm().total_cmp(&b.norm()));
         Some((all, diverging))
     }
@@ -204,16 +207,25 @@ pub(super) fn lowest(
             all: true,
         });
     }
-    let first = search(matrices, (shift, &sizes), (count, allowed))?;
-    let reach = first.values.iter().take(count).map(|s| s.norm());
-    let reach = reach.fold(0.0, f64::max);
-    // Free motions have s = 0 twice, which round-off divides by much where σ is too small for the stiffness.
-    let counted = sizes.start.max(FREE * reach)..sizes.end;
-    search(
-        matrices,
-        ((PART * reach).max(shift), &counted),
-        (count, allowed),
-    )
+    let reach = |found: &Found| {
+        let sizes = found.values.iter().take(count).map(|s| s.norm());
+        sizes.fold(0.0, f64::max)
+    };
+    let mut found = search(matrices, (shift, &sizes), (count, allowed))?;
+    let mut before = f64::INFINITY;
+    // A shift that is far from the vibrations leaves round-off in them, and a far too large reach leaves out low ones.
+    for _ in 0..SEARCHES {
+        let now = reach(&found);
+        if now >= NEARER * before {
+            break;
+        }
+        // Free motions have s = 0 twice, which round-off divides by much where σ is too small for the stiffness.
+        let counted = sizes.start.max(FREE * now)..sizes.end;
+        let nearer = (PART * now).max(shift);
+        found = search(matrices, (nearer, &counted), (count, allowed))?;
+        before = now;
+    }
+    Ok(found)
 }
 
 /// The same by one shift.
@@ -225,7 +237,6 @@ fn search(
     let mut space = Space::new(matrices, shift, allowed)?;
     let mut dimension = DIMENSION * (count + STARTS);
     let mut before: Vec<Complex64> = Vec::new();
-    let mut changed = f64::INFINITY;
     loop {
         let more = space.grow(dimension.min(2 * allowed));
         let (values, diverging) = space.values(sizes).ok_or(AssemblyFailure::Singular)?;
@@ -236,16 +247,11 @@ fn search(
                 all: true,
             });
         }
-        let change = match values.len() >= count && before.len() >= count {
-            true => {
-                let both = before.iter().zip(&values).take(count);
-                let changes = both.map(|(a, b)| (a - b).norm() / b.norm());
-                changes.fold(0.0, f64::max)
-            }
-            false => f64::INFINITY,
-        };
-        // Where a change falls no more, solutions have round-off of the stiffness. Eigenpairs are refined later.
-        if change <= CONVERGED || change <= NOISY && change >= changed {
+        let near = |(a, b): (&Complex64, &Complex64)| (a - b).norm() <= CONVERGED * b.norm();
+        let stays = values.len() >= count
+            && before.len() >= count
+            && before.iter().zip(&values).take(count).all(near);
+        if stays {
             return Ok(Found {
                 values: values[..count].to_vec(),
                 diverging,
@@ -256,7 +262,7 @@ fn search(
             let why = format!("{count} modes do not converge");
             return Err(AssemblyFailure::NoModes { why });
         }
-        (before, changed) = (values, change);
+        before = values;
         dimension *= GROWTH;
     }
 }

@@ -6,7 +6,7 @@ use super::pencil::{At, emit_at};
 use super::turning::Weights;
 use crate::linalg::{Emit, KnownPivots, Pattern, SingularMatrix, SparseLu, SparseMatrix};
 use crate::math::Scalar;
-use crate::model::{Model, RigidBody};
+use crate::model::{Model, RigidBody, Role};
 use crate::system::bodies::BodyMotion;
 use crate::system::emit_bodies::{Rates, emit_force_balance};
 use crate::system::flexible;
@@ -94,11 +94,13 @@ impl RigidMetric {
     }
 
     /// Mass \[kg\] of a body, and the moment of inertia \[kg m²\] that it has in addition. The coordinate of a coupling is an
-    /// angle in most cases, and its mass an inertia.
+    /// angle in most cases, and its mass an inertia. Elastic coordinates have their own mass alone: they are displacements and angles,
+    /// and stiffness makes their matrices regular.
     pub(super) fn of_body(&self, body: &RigidBody<f64>) -> [f64; 2] {
-        let more = match body.role.is_angle() {
-            true => self.inertia,
-            false => self.mass,
+        let more = match body.role {
+            Role::Elastic => 0.0,
+            role if role.is_angle() => self.inertia,
+            _ => self.mass,
         };
         [body.mass + more, self.inertia]
     }

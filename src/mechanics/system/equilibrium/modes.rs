@@ -136,15 +136,21 @@ impl Operator for Softened<'_> {
     fn solve(&mut self, b: &mut [f64]) {
         let n = self.order();
         for column in b.chunks_exact_mut(n.max(1)) {
-            let mut x = column.to_vec();
-            x.resize(self.solver.layout.order(), 0.0);
-            self.factors.solve(&mut x);
+            let x = self.solved(column);
             column.copy_from_slice(&x[..n]);
         }
     }
 }
 
 impl Softened<'_> {
+    /// (K + σ M̃)⁻¹ b on the motions that the joints allow, with the multipliers.
+    fn solved(&mut self, b: &[f64]) -> Vec<f64> {
+        let mut x = b.to_vec();
+        x.resize(self.solver.layout.order(), 0.0);
+        self.factors.solve(&mut x);
+        x
+    }
+
     /// The eigenvectors of the largest eigenvalues, at least `count` of them if there are as many, without those that are
     /// `known`; and whether there are no others.
     fn largest(&mut self, known: &Basis, count: usize) -> (Vec<Vec<f64>>, bool) {
@@ -308,9 +314,7 @@ impl Solver<'_> {
         // Shapes with their multipliers, K y + Gᵀ μ and M y.
         let columns: Vec<[Vec<f64>; 3]> = (space.into_iter())
             .map(|y| {
-                let mut shape = layout.mass_product(model, softened.motions, &y);
-                shape.resize(layout.order(), 0.0);
-                softened.factors.solve(&mut shape);
+                let shape = softened.solved(&layout.mass_product(model, softened.motions, &y));
                 let stiff = along.product(&shape)[..n].to_vec();
                 let heavy = layout.mass_product(model, softened.motions, &shape[..n]);
                 let size = dot(&shape[..n], &heavy).sqrt();

@@ -189,8 +189,6 @@ pub(super) struct Matrices {
 struct ByStrains {
     stiffness: SparseMatrix<f64>,
     damping: SparseMatrix<f64>,
-    /// Whether D counts.
-    damped: bool,
     forces: StrainForces,
     numbering: Numbering,
 }
@@ -203,7 +201,7 @@ fn assembled(at: At<f64>, weights: Weights<f64>, pattern: &Pattern) -> SparseMat
 }
 
 impl ByStrains {
-    /// Those at a state; `None` if it has no finite elements.
+    /// Those at a state; `None` if it has no finite elements, or some that are damped move.
     fn new(at: At<f64>, pattern: &Pattern, damped: bool) -> Option<Self> {
         let without = flexible::without_strains(at.model)?;
         let rest = At {
@@ -219,32 +217,36 @@ impl ByStrains {
             mass: 0.0,
         };
         Some(Self {
-            forces: StrainForces::new(at.model, at.numbering, &motions)?,
+            forces: StrainForces::new((at.model, at.numbering), &motions, damped)?,
             stiffness: assembled(rest, weights(1.0, 0.0), pattern),
             damping: assembled(rest, weights(0.0, f64::from(u8::from(damped))), pattern),
-            damped,
             numbering: at.numbering.clone(),
         })
     }
 
+    /// The shares of strains in K x and D x.
+    fn of_strains(&self, x: &[f64]) -> [Vec<f64>; 2] {
+        let (n, nv) = (self.numbering.unknowns(), self.numbering.velocities());
+        let mut along = x[..n].to_vec();
+        along.resize(nv, 0.0);
+        reduce::expand(&self.numbering, 1, &mut along);
+        let mut both = [0, 1].map(|_| vec![0.0; nv]);
+        self.forces.add_products(&along, &mut both);
+        for own in &mut both {
+            reduce::compress(&self.numbering, 1, own);
+            own.truncate(n);
+        }
+        both
+    }
+
     fn products(&self, x: &[Complex64], transposed: bool) -> [Vec<Complex64>; 2] {
         let mut out = [&self.stiffness, &self.damping].map(|own| product(own, x, transposed));
-        let (n, nv) = (self.numbering.unknowns(), self.numbering.velocities());
-        let unit = Complex64::new(1.0, 0.0);
-        let parts: [(fn(&Complex64) -> f64, Complex64); 2] =
-            [(|x| x.re, unit), (|x| x.im, Complex64::new(0.0, 1.0))];
-        for (part, unit) in parts {
-            let mut along: Vec<f64> = x[..n].iter().map(part).collect();
-            along.resize(nv, 0.0);
-            reduce::expand(&self.numbering, 1, &mut along);
-            let [mut elastic, mut viscous] = [0, 1].map(|_| vec![0.0; nv]);
-            (self.forces).add_products(&along, [&mut elastic, &mut viscous]);
-            if !self.damped {
-                viscous.fill(0.0);
-            }
-            for (out, own) in out.iter_mut().zip([&mut elastic, &mut viscous]) {
-                reduce::compress(&self.numbering, 1, own);
-                (out.iter_mut().zip(&own[..n])).for_each(|(out, x)| *out += unit * x);
+        let re: Vec<f64> = x.iter().map(|x| x.re).collect();
+        let im: Vec<f64> = x.iter().map(|x| x.im).collect();
+        let units = [(1.0, 0.0), (0.0, 1.0)].map(|(re, im)| Complex64::new(re, im));
+        for (along, unit) in [re, im].into_iter().zip(units) {
+            for (out, own) in out.iter_mut().zip(self.of_strains(&along)) {
+                (out.iter_mut().zip(own)).for_each(|(out, x)| *out += unit * x);
             }
         }
         out

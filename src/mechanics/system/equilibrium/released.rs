@@ -13,10 +13,11 @@
 use super::equations::State;
 use super::krylov::growth;
 use super::pencil::{At, Matrices, Moves};
-use crate::math::Scalar;
+use crate::math::{Scalar, Vec3};
 use crate::model::controller::Coordinate;
 use crate::model::{DegreeOfFreedom, LoadKind, Model};
 use crate::system::bodies::BodyMotion;
+use crate::system::constraint::RowGradient;
 use crate::system::failure::AssemblyFailure;
 use crate::system::in_motion::InMotion;
 use crate::system::joints;
@@ -52,17 +53,13 @@ impl<S: Scalar> Released<S> {
         model.run();
         let own = Numbering::new(&model);
         let left_out = RedundantRows::of(&model, &own);
-        let mut lambda = Vec::with_capacity(own.constraints());
-        for (j, joint) in model.joints.iter().enumerate() {
-            let rows = settled.joints[j].rows().zip(numbering.rows(j));
-            let imposed = rows.filter(|(row, _)| joint.rows().any(|own| own == *row));
-            lambda.extend(imposed.map(|(_, i)| x.lambda[i]));
-        }
         let still = vec![S::zero(); own.velocities()];
         let mut v = still.clone();
         let mut motions = Vec::new();
         BodyMotion::all(numbering, &x.q, &still, &mut motions);
         let here = InMotion::new(settled, numbering, &motions, S::zero());
+        let free = InMotion::new(&model, &own, &motions, S::zero());
+        let lambda = multipliers((&here, &x.lambda), &free);
         for (load, own_load) in settled.loads.iter().enumerate() {
             let LoadKind::Controller(controller) = &own_load.kind else {
                 continue;
@@ -119,6 +116,61 @@ impl Released<f64> {
         let at = self.at();
         growth(&Matrices::new(at, true), scales, at.freedom())
     }
+}
+
+/// The multipliers that give the reactions of joints where drives are gone. A drive moves the frame of its joint on body B, and
+/// with it what the multipliers of the other rows are those of: where it is gone, they are others.
+fn multipliers<S: Scalar>((held, lambda): (&InMotion<S>, &[S]), free: &InMotion<S>) -> Vec<S> {
+    let (mut with, mut without) = (Vec::new(), Vec::new());
+    joints::gradients(held, &mut with);
+    joints::gradients(free, &mut without);
+    let mut out = Vec::with_capacity(free.numbering.constraints());
+    for (j, joint) in free.model.joints.iter().enumerate() {
+        let rows = held.model.joints[j].rows().zip(held.numbering.rows(j));
+        let imposed = rows.filter(|(row, _)| joint.rows().any(|own| own == *row));
+        let imposed: Vec<usize> = imposed.map(|(_, i)| i).collect();
+        if imposed.len() == held.numbering.rows(j).len() {
+            out.extend(imposed.into_iter().map(|i| lambda[i]));
+            continue;
+        }
+        // The wrench on body A: a force, and a torque in body axes.
+        let wrench = |g: &RowGradient<S>| [g.force, g.torque_a];
+        let mut whole = [Vec3::zeros(); 2];
+        for i in imposed {
+            for (sum, own) in whole.iter_mut().zip(wrench(&with[i])) {
+                *sum += own * lambda[i];
+            }
+        }
+        let own: Vec<[Vec3<S>; 2]> = free
+            .numbering
+            .rows(j)
+            .map(|i| wrench(&without[i]))
+            .collect();
+        out.extend(parts(&own, &whole));
+    }
+    out
+}
+
+/// The factors with which independent wrenches add up to `whole`, which is in their space.
+fn parts<S: Scalar>(wrenches: &[[Vec3<S>; 2]], whole: &[Vec3<S>; 2]) -> Vec<S> {
+    let inner = |a: &[Vec3<S>; 2], b: &[Vec3<S>; 2]| a[0].dot(&b[0]) + a[1].dot(&b[1]);
+    // Normal equations, positive definite, each row with its right side.
+    let row = |own: &[Vec3<S>; 2]| -> Vec<S> {
+        let all = wrenches.iter().chain([whole]);
+        all.map(|other| inner(own, other)).collect()
+    };
+    let mut rows: Vec<Vec<S>> = wrenches.iter().map(row).collect();
+    let n = rows.len();
+    for k in 0..n {
+        let pivot = rows[k].clone();
+        for (_, other) in rows.iter_mut().enumerate().filter(|(i, _)| *i != k) {
+            let factor = other[k] / pivot[k];
+            for (x, &p) in other.iter_mut().zip(&pivot) {
+                *x -= factor * p;
+            }
+        }
+    }
+    (0..n).map(|k| rows[k][n] / rows[k][k]).collect()
 }
 
 /// The force or torque on body A of a joint by the rows that it has beyond those of `model`, along its axis.

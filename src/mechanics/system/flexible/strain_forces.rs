@@ -8,7 +8,7 @@ use crate::system::bodies::BodyMotion;
 use crate::system::finite;
 use crate::system::numbering::Numbering;
 
-/// The forces of strains of all bodies of finite elements, about a state in which their coordinates are at rest.
+/// The forces of strains of all bodies of finite elements about a state. Those that are damped are at rest in it.
 #[derive(Clone, Debug)]
 pub struct StrainForces(Vec<OfBody>);
 
@@ -21,11 +21,11 @@ struct OfBody {
 }
 
 impl StrainForces {
-    /// Those of a model; `None` if it has no finite elements, or some that are damped move.
+    /// Those of a model, with their damping or without; `None` if it has no finite elements, or some that are damped move.
     pub fn new(
-        model: &Model<f64>,
-        numbering: &Numbering,
+        (model, numbering): (&Model<f64>, &Numbering),
         motions: &[BodyMotion<f64>],
+        damped: bool,
     ) -> Option<Self> {
         let mut all = Vec::new();
         for body in &model.flexible {
@@ -38,9 +38,10 @@ impl StrainForces {
             }
             let mut elements = own.map(&mut |x| Dual::new(x, 0.0));
             // Damping by the mass is no force of strains.
-            if let Some([by_mass, _]) = &mut elements.damping {
-                *by_mass = Dual::new(0.0, 0.0);
-            }
+            elements.damping = match elements.damping {
+                Some([_, by_stiffness]) if damped => Some([Dual::new(0.0, 0.0), by_stiffness]),
+                _ => None,
+            };
             all.push(OfBody {
                 elements,
                 coordinates: coordinates(body, motions),
@@ -51,7 +52,7 @@ impl StrainForces {
     }
 
     /// Adds A x and B x for the symmetric derivatives A by coordinates and B by rates, in velocity numbering.
-    pub fn add_products(&self, x: &[f64], [elastic, viscous]: [&mut [f64]; 2]) {
+    pub fn add_products(&self, x: &[f64], [elastic, viscous]: &mut [Vec<f64>; 2]) {
         for own in &self.0 {
             let along = own.slots.iter().map(|&slot| x[slot]);
             let moved = own.coordinates.iter().zip(along.clone());
