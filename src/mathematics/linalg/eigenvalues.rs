@@ -4,6 +4,9 @@ use crate::math::Complex64;
 use faer::MatRef;
 use nalgebra::DMatrix;
 
+const ZEROS: [f64; 3] = [f64::EPSILON, 1e-10, 1e-6];
+const SWEEPS: usize = 10_000;
+
 /// All eigenvalues of a square matrix; `None` if an entry is not finite, or they do not converge. Those of a conjugate pair have
 /// exactly opposite imaginary parts, and that of a real one is zero.
 pub fn eigenvalues(matrix: &DMatrix<f64>) -> Option<Vec<Complex64>> {
@@ -15,7 +18,15 @@ pub fn eigenvalues(matrix: &DMatrix<f64>) -> Option<Vec<Complex64>> {
         return Some(Vec::new());
     }
     let entries = MatRef::from_column_major_slice(matrix.as_slice(), order, order);
-    entries.eigenvalues().ok()
+    entries.eigenvalues().ok().or_else(|| by_schur(matrix))
+}
+
+/// The same by nalgebra's Schur form, which converges for others, with what is zero beside its neighbours.
+fn by_schur(matrix: &DMatrix<f64>) -> Option<Vec<Complex64>> {
+    let form = |&zero: &f64| matrix.clone().try_schur(zero, SWEEPS);
+    let values = ZEROS.iter().find_map(form)?.complex_eigenvalues();
+    let one = |x: &nalgebra::Complex<f64>| Complex64::new(x.re, x.im);
+    Some(values.iter().map(one).collect())
 }
 
 #[cfg(test)]
