@@ -4,6 +4,7 @@ use crate::math::Complex64;
 use faer::MatRef;
 use nalgebra::DMatrix;
 
+/// What is zero beside its neighbours, and most iterations of the second method.
 const ZEROS: [f64; 3] = [f64::EPSILON, 1e-10, 1e-6];
 const SWEEPS: usize = 10_000;
 
@@ -21,7 +22,20 @@ pub fn eigenvalues(matrix: &DMatrix<f64>) -> Option<Vec<Complex64>> {
     entries.eigenvalues().ok().or_else(|| by_schur(matrix))
 }
 
-/// The same by nalgebra's Schur form, which converges for others, with what is zero beside its neighbours.
+/// [`eigenvalues`] of a complex matrix.
+pub fn complex_eigenvalues(matrix: &DMatrix<Complex64>) -> Option<Vec<Complex64>> {
+    let order = matrix.nrows();
+    if matrix
+        .iter()
+        .any(|x| !(x.re.is_finite() && x.im.is_finite()))
+    {
+        return None;
+    }
+    let entries = MatRef::from_column_major_slice(matrix.as_slice(), order, order);
+    entries.eigenvalues().ok()
+}
+
+/// The same by nalgebra's Schur form, which converges for others.
 fn by_schur(matrix: &DMatrix<f64>) -> Option<Vec<Complex64>> {
     let form = |&zero: &f64| matrix.clone().try_schur(zero, SWEEPS);
     let values = ZEROS.iter().find_map(form)?.complex_eigenvalues();
@@ -65,6 +79,24 @@ mod tests {
             assert!((sum.re - matrix.trace()).abs() < 1e-12 * matrix.norm());
             assert_eq!(sum.im, 0.0);
         }
+    }
+
+    /// Two eigenvalues that are equal but for noise.
+    #[test]
+    fn equal_complex_eigenvalues_converge() {
+        let mean = Complex64::new(-1e-12, 3e-9);
+        for k in 0..2000 {
+            let noise = |i: usize| 1e-16 * ((7 * k + 3 * i) as f64).sin();
+            let entry = |i: usize, j: usize| {
+                let own = Complex64::new(noise(i + 2 * j), noise(i + 2 * j + 9));
+                if i == j { mean + own } else { own }
+            };
+            let matrix = DMatrix::from_fn(2, 2, entry);
+            let all = complex_eigenvalues(&matrix).expect("converge");
+            assert!((all[0] + all[1] - matrix.trace()).norm() < 1e-22);
+            assert!(all.iter().all(|x| (x - mean).norm() < 1e-15));
+        }
+        assert!(complex_eigenvalues(&DMatrix::from_element(2, 2, mean * f64::NAN)).is_none());
     }
 
     #[test]

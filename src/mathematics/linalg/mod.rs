@@ -22,7 +22,7 @@ mod sparse_lu;
 mod substitution;
 mod workspace;
 
-pub use eigenvalues::eigenvalues;
+pub use eigenvalues::{complex_eigenvalues, eigenvalues};
 pub use elimination::{Factors, Pivots, SingularMatrix, SolveScalar};
 pub use factors::{LAST, REFINED_SOLVES, SparseLu, is_last};
 pub use front::System;

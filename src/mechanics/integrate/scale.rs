@@ -10,7 +10,7 @@
 
 use crate::math::Scalar;
 use crate::model::controller::{Controller, Coordinate};
-use crate::model::{DegreeOfFreedom, LoadKind, Model};
+use crate::model::{DegreeOfFreedom, Model};
 use crate::system::flexible::MeanSquare;
 use crate::system::initial::InitialState;
 use crate::system::{Numbering, placement};
@@ -84,7 +84,7 @@ impl Elastic {
         }
         let rigid = model.bodies.len() - carries.iter().filter(|carries| **carries).count();
         let own = DISPLACEMENT * displacements.len();
-        let states = controllers(model).flat_map(Controller::states).count();
+        let states = model.controllers().flat_map(Controller::states).count();
         Self {
             components: [7 * rigid + own, 6 * rigid + own + states],
             displacements,
@@ -125,7 +125,7 @@ impl Scale {
         let drift = if fall > 0.0 { fall } else { length / duration };
         let floor = [speed.max(drift), spin.max(drift / length)];
         let sizes = ([length, 1.0], floor, duration);
-        let states = controllers(model).flat_map(|own| {
+        let states = model.controllers().flat_map(|own| {
             let least = LEAST_EFFORT * effort(own, gravity, sizes);
             own.states().map(move |state| (state, least))
         });
@@ -235,13 +235,6 @@ fn largest<S: Scalar>(x: &[S]) -> f64 {
     x.iter().fold(0.0, |m, x| m.max(x.re().abs()))
 }
 
-fn controllers<S: Scalar>(model: &Model<S>) -> impl Iterator<Item = &Controller<S>> {
-    model.loads.iter().filter_map(|load| match &load.kind {
-        LoadKind::Controller(own) => Some(own),
-        _ => None,
-    })
-}
-
 /// The effort \[N or N m\] that the gains of a controller give for errors of these sizes (of a displacement and of an angle) and
 /// speeds, with the integral of such an error over the motion, and the weights that it balances.
 fn effort<S: Scalar>(
@@ -260,18 +253,14 @@ fn effort<S: Scalar>(
         let k = kind(&by.coordinate);
         by.proportional.re().abs() * sizes[k] + by.derivative.re().abs() * speeds[k]
     });
+    let first = kind(&own.feedback[0].coordinate);
     // An angle is balanced by a torque.
-    let arm = match own.feedback.first().map(|by| kind(&by.coordinate)) {
-        Some(1) => sizes[0],
-        _ => 1.0,
-    };
+    let arm = [1.0, sizes[0]][first];
     let weights = own
         .weights
         .iter()
         .map(|weight| weight.mass.re().abs() * gravity * arm);
-    let integral = own.integral.as_ref().zip(own.feedback.first());
-    let integral = integral.map_or(0.0, |(integral, by)| {
-        integral.gain.re().abs() * sizes[kind(&by.coordinate)] * duration
-    });
+    let integral = own.integral.as_ref();
+    let integral = integral.map_or(0.0, |own| own.gain.re().abs() * sizes[first] * duration);
     feedback.chain(weights).sum::<f64>() + integral
 }

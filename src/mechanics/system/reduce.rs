@@ -53,6 +53,20 @@ pub fn expand<S: Scalar>(numbering: &Numbering, parts: usize, x: &mut [S]) {
     }
 }
 
+/// Bᵀ x of one part.
+pub fn compressed<S: Scalar>(numbering: &Numbering, mut x: Vec<S>) -> Vec<S> {
+    let n = compress(numbering, 1, &mut x);
+    x.truncate(n);
+    x
+}
+
+/// B u of one part.
+pub fn expanded<S: Scalar>(numbering: &Numbering, mut u: Vec<S>) -> Vec<S> {
+    u.resize(numbering.velocities(), S::zero());
+    expand(numbering, 1, &mut u);
+    u
+}
+
 /// Applies `solve` in place to the reduced form of `x`.
 pub fn through<S: Scalar>(
     numbering: &Numbering,

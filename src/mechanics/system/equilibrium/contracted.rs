@@ -73,9 +73,7 @@ fn add_strain_energies<S: Scalar>(at: At<S>, pairs: &[Between], sums: &mut [[S; 
     // In velocity numbering, of the real or of the imaginary part; none if it is zero.
     let part = |x: &[Complex64], part: fn(&Complex64) -> f64| -> Option<Vec<S>> {
         let unknowns = x[..numbering.unknowns()].iter().map(part);
-        let mut out: Vec<S> = unknowns.map(S::from).collect();
-        out.resize(numbering.velocities(), S::zero());
-        reduce::expand(numbering, 1, &mut out);
+        let out = reduce::expanded(numbering, unknowns.map(S::from).collect());
         out.iter().any(|&x| x != S::zero()).then_some(out)
     };
     let parts = |x: &[Complex64]| [part(x, |x| x.re), part(x, |x| x.im)];

@@ -16,7 +16,7 @@
 //! if their matrix of derivatives is a multiple of the unit matrix; else the speed has no derivative.
 
 use super::contracted::{Between, contracted};
-use super::eigenpairs::{Cluster, clusters};
+use super::eigenpairs::{Cluster, cluster, groups};
 use super::equations::State;
 use super::krylov::lowest;
 use super::pencil::{At, Matrices};
@@ -34,7 +34,7 @@ const ITERATIONS: usize = 40;
 /// The inertia of a motion without stiffness, relative to that at the speed; squares of speeds are larger by the second factor.
 const LEAST: f64 = 1e-11;
 const ABOVE: f64 = 1e4;
-/// Speeds that are found with less round-off, relative to the speed at which N is.
+/// Speeds that are found with less round-off, relative to the speed at which N is, and to the lowest one.
 const LARGEST: f64 = 1e6;
 /// Number of speeds that are known.
 const KEPT: usize = 8;
@@ -215,11 +215,12 @@ fn at_equilibrium(
         let mut count = 2 * number + 2;
         loop {
             let own = lowest(&matrices, scales.clone(), (count, allowed))?;
-            let speeds: Vec<Complex64> = (own.values.iter().copied())
+            let mut speeds: Vec<Complex64> = (own.values.iter().copied())
                 .filter(|s| s.re.abs() <= IMAGINARY * s.norm())
                 .collect();
-            let mut all = clusters(&matrices, &speeds)?;
-            all.sort_by(|a, b| a.values[0].norm().total_cmp(&b.values[0].norm()));
+            let highest = LARGEST * speeds.first().map_or(0.0, |s| s.norm());
+            speeds.retain(|s| s.norm() < highest);
+            let all = groups(&speeds);
             // The last cluster may not be whole.
             let there = if own.all {
                 all.len()
@@ -227,7 +228,7 @@ fn at_equilibrium(
                 all.len().saturating_sub(1)
             };
             if there >= number {
-                let own = all.swap_remove(number - 1);
+                let own = cluster(&matrices, &all[number - 1])?;
                 let mean = own.values.iter().map(|s| s.im).sum::<f64>() / own.values.len() as f64;
                 return Ok((mean, own));
             }

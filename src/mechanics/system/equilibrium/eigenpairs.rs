@@ -12,7 +12,7 @@
 
 use super::contracted::Between;
 use super::pencil::{Matrices, product};
-use crate::linalg::SparseLu;
+use crate::linalg::{SparseLu, complex_eigenvalues};
 use crate::math::Complex64;
 use crate::system::failure::AssemblyFailure;
 use nalgebra::DMatrix;
@@ -26,8 +26,6 @@ const ASIDE: f64 = 1e-9;
 const NEAR: f64 = 1e-3;
 /// Relative distance of eigenvalues that form a cluster.
 const CLUSTER: f64 = 1e-6;
-/// Most iterations for the eigenvalues of a small matrix.
-const SWEEPS: usize = 10_000;
 
 /// Eigenvalues that are equal, but for a part of about 1e-6, with bases of their spaces.
 #[derive(Clone, Debug)]
@@ -101,12 +99,16 @@ fn whole(matrices: &Matrices, x: &[Complex64], s: Complex64, transposed: bool) -
     out
 }
 
-/// (D + 2 s M) x, or its transpose.
-fn slope(matrices: &Matrices, x: &[Complex64], s: Complex64, transposed: bool) -> Vector {
-    let mut out = product(&matrices.damping, x, transposed);
+/// (D + 2 s M) x, or its transpose, of D x.
+fn slope(
+    matrices: &Matrices,
+    (x, mut damped): (&[Complex64], Vector),
+    s: Complex64,
+    transposed: bool,
+) -> Vector {
     let heavy = product(&matrices.mass, x, transposed);
-    (out.iter_mut().zip(&heavy)).for_each(|(a, b)| *a += s * 2.0 * b);
-    out
+    (damped.iter_mut().zip(&heavy)).for_each(|(a, b)| *a += s * 2.0 * b);
+    damped
 }
 
 struct Shifted<'a> {
@@ -118,7 +120,8 @@ struct Shifted<'a> {
 impl Shifted<'_> {
     /// (D + 2 σ M) x, or its transpose.
     fn slope(&self, x: &[Complex64], transposed: bool) -> Vector {
-        slope(self.matrices, x, self.shift, transposed)
+        let damped = product(&self.matrices.damping, x, transposed);
+        slope(self.matrices, (x, damped), self.shift, transposed)
     }
 
     /// Refines a single pair by its residuals Q(s) r and Qᵀ(s) l: iterations leave round-off of the largest entries in
@@ -148,10 +151,8 @@ impl Shifted<'_> {
                 }
             }
             // D by strains, as in the residual.
-            let [_, mut change] = self.matrices.products(right, false);
-            let heavy = product(&self.matrices.mass, right, false);
-            (change.iter_mut().zip(&heavy)).for_each(|(d, m)| *d += *s * 2.0 * m);
-            let rate = dot(left, &change);
+            let [_, damped] = self.matrices.products(right, false);
+            let rate = dot(left, &slope(self.matrices, (right, damped), *s, false));
             *s -= dot(left, &whole(self.matrices, right, *s, false)) / rate;
             left.iter_mut().for_each(|x| *x /= rate);
         }
@@ -183,37 +184,54 @@ impl Shifted<'_> {
     }
 }
 
+/// Eigenvalues by clusters, in the order of the first of each.
+pub(super) fn groups(values: &[Complex64]) -> Vec<Vec<Complex64>> {
+    let mut all: Vec<Vec<Complex64>> = Vec::new();
+    for &value in values {
+        let near = |own: &&mut Vec<Complex64>| (value - own[0]).norm() <= CLUSTER * own[0].norm();
+        match all.iter_mut().find(near) {
+            Some(own) => own.push(value),
+            None => all.push(vec![value]),
+        }
+    }
+    all
+}
+
 /// The eigenvectors of some eigenvalues, by clusters.
 ///
 /// # Errors
-/// Singular equations.
+/// Singular equations, or values that are no eigenvalues.
 pub(super) fn clusters(
     matrices: &Matrices,
     values: &[Complex64],
 ) -> Result<Vec<Cluster>, AssemblyFailure> {
-    let mut left: Vec<Complex64> = values.to_vec();
-    let mut all = Vec::new();
-    while !left.is_empty() {
-        let first = left.remove(0);
-        let (near, others): (Vec<_>, Vec<_>) =
-            (left.into_iter()).partition(|other| (other - first).norm() <= CLUSTER * first.norm());
-        left = others;
-        let own: Vec<Complex64> = std::iter::once(first).chain(near).collect();
-        let found = cluster(matrices, &own).ok_or(AssemblyFailure::Singular)?;
-        let near = |value: &Complex64| {
-            own.iter()
-                .any(|own| (own - value).norm() <= NEAR * own.norm())
-        };
-        if !found.values.iter().all(near) {
-            let why = "modes do not converge".into();
-            return Err(AssemblyFailure::NoModes { why });
-        }
-        all.push(found);
-    }
-    Ok(all)
+    let all = groups(values).into_iter();
+    all.map(|own| cluster(matrices, &own)).collect()
 }
 
-fn cluster(matrices: &Matrices, values: &[Complex64]) -> Option<Cluster> {
+/// The eigenvectors of a cluster.
+///
+/// # Errors
+/// As [`clusters`].
+pub(super) fn cluster(
+    matrices: &Matrices,
+    values: &[Complex64],
+) -> Result<Cluster, AssemblyFailure> {
+    let found = iterated(matrices, values).ok_or(AssemblyFailure::Singular)?;
+    let near = |value: &Complex64| {
+        let mut own = values.iter();
+        own.any(|own| (own - value).norm() <= NEAR * own.norm())
+    };
+    match found.values.iter().all(near) {
+        true => Ok(found),
+        false => {
+            let why = "modes do not converge".into();
+            Err(AssemblyFailure::NoModes { why })
+        }
+    }
+}
+
+fn iterated(matrices: &Matrices, values: &[Complex64]) -> Option<Cluster> {
     let p = values.len();
     let mean = values.iter().sum::<Complex64>() / p as f64;
     let shift = mean * Complex64::new(1.0 + ASIDE, ASIDE);
@@ -283,11 +301,8 @@ fn finish(
     let values: Vec<Complex64> = match p {
         1 => vec![shifted.shift + change[(0, 0)]],
         _ => {
-            // Equal eigenvalues do not always reach round-off.
-            let form = |&zero: &f64| change.clone().try_schur(zero, SWEEPS);
-            let schur = [f64::EPSILON, 1e-10, 1e-6].iter().find_map(form)?;
-            let own = schur.eigenvalues()?;
-            own.iter().map(|x| shifted.shift + x).collect()
+            let own = complex_eigenvalues(&change)?.into_iter();
+            own.map(|x| shifted.shift + x).collect()
         }
     };
     // The slope at the mean of the eigenvalues.

@@ -184,16 +184,12 @@ impl<'a> Layout<'a> {
         (part(&six[..3]) / of_place).max(part(&six[3..]))
     }
 
-    pub(super) fn compressed<S: Scalar>(&self, mut x: Vec<S>) -> Vec<S> {
-        let n = reduce::compress(self.numbering, 1, &mut x);
-        x.truncate(n);
-        x
+    pub(super) fn compressed<S: Scalar>(&self, x: Vec<S>) -> Vec<S> {
+        reduce::compressed(self.numbering, x)
     }
 
-    pub(super) fn expanded<S: Scalar>(&self, mut u: Vec<S>) -> Vec<S> {
-        u.resize(self.numbering.velocities(), S::zero());
-        reduce::expand(self.numbering, 1, &mut u);
-        u
+    pub(super) fn expanded<S: Scalar>(&self, u: Vec<S>) -> Vec<S> {
+        reduce::expanded(self.numbering, u)
     }
 
     /// Velocities of rigid unknowns.

@@ -226,17 +226,11 @@ impl ByStrains {
 
     /// The shares of strains in K x and D x.
     fn of_strains(&self, x: &[f64]) -> [Vec<f64>; 2] {
-        let (n, nv) = (self.numbering.unknowns(), self.numbering.velocities());
-        let mut along = x[..n].to_vec();
-        along.resize(nv, 0.0);
-        reduce::expand(&self.numbering, 1, &mut along);
-        let mut both = [0, 1].map(|_| vec![0.0; nv]);
+        let numbering = &self.numbering;
+        let along = reduce::expanded(numbering, x[..numbering.unknowns()].to_vec());
+        let mut both = [0, 1].map(|_| vec![0.0; along.len()]);
         self.forces.add_products(&along, &mut both);
-        for own in &mut both {
-            reduce::compress(&self.numbering, 1, own);
-            own.truncate(n);
-        }
-        both
+        both.map(|own| reduce::compressed(numbering, own))
     }
 
     fn products(&self, x: &[Complex64], transposed: bool) -> [Vec<Complex64>; 2] {

@@ -163,9 +163,9 @@ fn parts<S: Scalar>(wrenches: &[[Vec3<S>; 2]], whole: &[Vec3<S>; 2]) -> Vec<S> {
     let n = rows.len();
     for k in 0..n {
         let pivot = rows[k].clone();
-        for (_, other) in rows.iter_mut().enumerate().filter(|(i, _)| *i != k) {
-            let factor = other[k] / pivot[k];
-            for (x, &p) in other.iter_mut().zip(&pivot) {
+        for i in (0..n).filter(|&i| i != k) {
+            let factor = rows[i][k] / pivot[k];
+            for (x, &p) in rows[i].iter_mut().zip(&pivot) {
                 *x -= factor * p;
             }
         }
