@@ -4,7 +4,7 @@
 
 use crate::integrate::{IntegrationFailure, Spacing, Trajectory};
 use crate::model::flexible::{Modes, carriers};
-use crate::model::{FlexibleBody, Form, Inertia, JointKind, Model};
+use crate::model::{FlexibleBody, Form, Inertia, JointKind, LoadKind, Model};
 use crate::problem::Problem;
 use crate::structures::modal::ModalNumbers;
 use crate::structures::modal::frequencies::{Held, frequencies};
@@ -17,6 +17,8 @@ use std::f64::consts::TAU;
 /// The axes of a section are those turned by the tangent of its rotation θ, so a body that is welded to it is turned by
 /// θ³/3 too little.
 const OF_WELDS: f64 = 1.0 / 3.0;
+/// A torque on a section does work along tan of the angle by which it turns the axes, so it acts on θ with a part 1 / (1 + θ²).
+const OF_TORQUES: f64 = 1.0;
 /// Of bodies from files only sections are known. A cantilever with a force at its end errs by 0.42 θ².
 const OF_FILES: f64 = 0.42;
 /// Part of the moment of lateral buckling above which a beam that cannot buckle is told.
@@ -154,17 +156,26 @@ struct At {
 /// A section of a body, and the factor of the square of its rotation in the error.
 type Section<'m> = (&'m Modes<f64>, f64);
 
-/// The sections of each flexible body whose rotations spoil something: those that are welded to another body, and all of
-/// bodies from files.
+/// The sections of each flexible body whose rotations spoil something: those that are welded to another body, those on which
+/// torques act, directly or by such a body, and all of bodies from files.
 fn sections(model: &Model<f64>) -> Vec<Vec<Section<'_>>> {
     let mut all = vec![Vec::new(); model.flexible.len()];
     let mut welded = vec![false; model.bodies.len()];
-    let welds = model
-        .joints
-        .iter()
-        .filter(|joint| joint.kind == JointKind::Weld);
-    for body in welds.flat_map(|joint| [Some(joint.body_a), joint.body_b]) {
-        body.into_iter().for_each(|body| welded[body] = true);
+    let mut torqued = vec![false; model.bodies.len()];
+    for load in &model.loads {
+        if let LoadKind::Torque { body, .. } = load.kind {
+            torqued[body] = true;
+        }
+    }
+    let direct = torqued.clone();
+    let welds = (model.joints.iter()).filter(|joint| joint.kind == JointKind::Weld);
+    for joint in welds {
+        let bodies = [Some(joint.body_a), joint.body_b].into_iter().flatten();
+        let turns = bodies.clone().any(|body| direct[body]);
+        for body in bodies {
+            welded[body] = true;
+            torqued[body] |= turns;
+        }
     }
     let mut owners = vec![None; model.bodies.len()];
     for (i, body) in model.flexible.iter().enumerate() {
@@ -178,17 +189,17 @@ fn sections(model: &Model<f64>) -> Vec<Vec<Section<'_>>> {
         let Some((owner, modes)) = owner else {
             continue;
         };
-        let of_weld = if joint.body_b.is_some_and(|body| welded[body]) {
-            OF_WELDS
-        } else {
-            0.0
+        let factor = |of: &[bool], factor: f64| match joint.body_b.is_some_and(|body| of[body]) {
+            true => factor,
+            false => 0.0,
         };
+        let of_joints = factor(&welded, OF_WELDS) + factor(&torqued, OF_TORQUES);
         let of_file = match &model.flexible[owner].form {
             Form::Modal(modal) if modal.shells.is_none() && modal.sections.is_empty() => OF_FILES,
             Form::Modal(_) | Form::Finite(_) => 0.0,
         };
-        if of_weld + of_file > 0.0 {
-            all[owner].push((modes, of_weld + of_file));
+        if of_joints + of_file > 0.0 {
+            all[owner].push((modes, of_joints + of_file));
         }
     }
     all

@@ -227,3 +227,46 @@ fn what_cannot_be_chosen_is_told() {
     let error = read(&document).expect_err("a fault").to_string();
     assert!(error.contains("rho"), "{error}");
 }
+
+/// A sharp aggregate of a wave sees all of its equal peaks, also those between the ends of steps: closed forms of narrow peaks.
+#[test]
+fn sharp_aggregates_see_every_peak() {
+    let (rho, duration): (f64, f64) = (1e5, 2.0);
+    let sliders = |frequency: f64| {
+        json!({
+            "version": 1, "name": "sliders", "gravity": [0, 0, 0],
+            "bodies": {
+                "wave": {"shape": {"sphere": {"radius": 0.1}}, "mass": 2},
+                "ramp": {"shape": {"sphere": {"radius": 0.1}}, "mass": 1, "place": {"at": [0, 5, 0]}}
+            },
+            "joints": {
+                "wave": {"prismatic": {"between": ["wave", "ground"], "at": [0, 0, 0], "axis": [1, 0, 0]}},
+                "ramp": {"prismatic": {"between": ["ramp", "ground"], "at": [0, 5, 0], "axis": [1, 0, 0]}}
+            },
+            "drives": {
+                "wave": {"joint": "wave", "slide": {"harmonic": {"amplitude": 1, "frequency": frequency, "phase": 0.3, "mean": 0.3}}},
+                "ramp": {"joint": "ramp", "slide": {"polynomial": [0, 0]}}
+            },
+            "simulation": {"duration": duration, "tolerance": 1e-9},
+            "functions": {"peak": {"ks": {"rho": rho, "of": {"sum": [
+                {"position": {"body": "wave", "direction": [1, 0, 0]}}, {"position": {"body": "ramp", "direction": [1, 0, 0]}}
+            ]}}}},
+            "variables": {"slope": {"path": "/drives/ramp/slide/polynomial/1", "lower": -1, "upper": 1}}
+        })
+    };
+    for frequency in [1.0, 2.0] {
+        let (problem, ..) = read(&sliders(frequency)).expect("a problem");
+        let x = problem.start();
+        let found = Simulated::of(&problem, &x).expect("a motion").value(0);
+        let omega = 2.0 * std::f64::consts::PI * frequency;
+        let count = frequency * duration;
+        // The mean of e^(ρ (x − 1.3)) over peaks 1.3 − ω² t² / 2.
+        let width = (2.0 * std::f64::consts::PI / (rho * omega * omega)).sqrt();
+        let expected = 1.3 + (count * width / duration).ln() / rho;
+        assert!((found - expected).abs() < 1e-8, "{found} {expected}");
+        let first = (0.5 * std::f64::consts::PI - 0.3) / omega;
+        let mean = first + 0.5 * (count - 1.0) / frequency;
+        let slope = check(&problem, &x).expect("derivatives")[0].adjoint;
+        assert!((slope - mean).abs() < 1e-3, "{slope} {mean}");
+    }
+}

@@ -1,6 +1,6 @@
 //! Scenes with beams from files: torques at their points, starts of joints, pictures.
 
-use crate::reference::documents::{problem as parsed, run};
+use crate::reference::documents::{problem as parsed, run, values};
 use flexbody_driver::{check, simulate};
 use flexbody_figures::of_simulation;
 use serde_json::Value;
@@ -200,5 +200,37 @@ fn bodies_that_turn_far_inside_are_told() {
         bent(&beam, turn);
         linear["gravity"] = json!([0, -weight, 0]);
         bent(&linear, turn);
+    }
+}
+
+/// A joint at the end of a beam by coordinates is a place of its own where the design moves the end.
+#[test]
+fn places_of_a_beam_may_part_with_the_design() {
+    let document = json!({
+        "version": 1, "name": "beam", "gravity": [0, 0, 0],
+        "bodies": {
+            "beam": {"beam": {
+                "length": 1, "section": {"rectangle": {"width": 0.03, "height": 0.03}}, "material": {"young": 1e9, "density": 1000}
+            }},
+            "box": {"shape": {"box": {"size": [0.3, 0.1, 0.1]}}, "mass": 1, "place": {"at": [1, 0, 0]}}
+        },
+        "joints": {
+            "root": {"weld": {"between": ["beam", "ground"], "at": "beam.start"}},
+            "box": {"weld": {"between": ["box", "beam"], "at": [1, 0, 0]}}
+        },
+        "loads": {"tip": {"force": {"body": "beam", "point": "end", "direction": [0, 0, 1], "magnitude": 0.1}}},
+        "functions": {"mass": "mass", "y": {"final": {"position": {"body": "box", "direction": [0, 0, 1]}}}},
+        "simulation": {"duration": 0.01},
+        "variables": {"length": {"path": "/bodies/beam/beam/length", "lower": 0.5, "upper": 2}}
+    });
+    let mut plain = document.clone();
+    plain["variables"] = json!({});
+    assert_eq!(values(&document), values(&plain));
+    plain["bodies"]["beam"]["beam"]["length"] = json!(1.5);
+    let longer = values(&plain);
+    let at = simulate(&parsed(&document), &[1.5]).expect("a motion").at;
+    for (f, value) in longer.into_iter().enumerate() {
+        let off = (at.function(f).value - value).abs();
+        assert!(off <= 1e-9 * value.abs(), "{f}: {off:e}");
     }
 }

@@ -1,6 +1,6 @@
 //! Machines at rest: equilibria against closed forms, stability, free motions, derivatives, families, faults.
 
-use crate::reference::documents::{problem as parsed, value, values};
+use crate::reference::documents::{extended, problem as parsed, value, values};
 use crate::reference::gradients::gradients_are_exact;
 use flexbody_driver::start::notes;
 use flexbody_problem::Problem;
@@ -693,5 +693,37 @@ fn couplings_come_to_rest_at_every_size() {
     for l in [100.0, 0.3, 0.1, 0.01, 1e-3] {
         let found = value(&file(l), "a");
         assert!((found - of_metre).abs() < 1e-6, "{l}: {found} {of_metre}");
+    }
+}
+
+/// A twisted beam comes to the same rest at every size, alone and as the start of a motion: torques grow as its volume.
+#[test]
+fn twisted_beams_come_to_rest_at_every_size() {
+    let file = |l: f64, analysis: Value| {
+        let document = json!({
+            "version": 1, "name": "beam", "gravity": [0, 0, 0],
+            "bodies": {"beam": {"beam": {
+                "length": l, "section": {"rectangle": {"width": 0.03 * l, "height": 0.03 * l}},
+                "material": {"young": 1e8, "density": 1000}, "strain": "linear",
+                "modes": {"bending_y": 1, "bending_z": 2, "torsion": 1}
+            }}},
+            "joints": {"root": {"weld": {"between": ["beam", "ground"], "at": "beam.start"}}},
+            "loads": {"twist": {"torque": {"body": "beam", "point": "end", "direction": [1, 0.1, 0.2], "magnitude": l.powi(3)}}},
+            "functions": {"energy": {"final": {"strain_energy": {"body": "beam"}}}}
+        });
+        extended(document, &analysis)
+    };
+    for analysis in [
+        json!({"analysis": "rest"}),
+        json!({"start": "equilibrium", "simulation": {"duration": 1e-6}}),
+    ] {
+        let of_metre = value(&file(1.0, analysis.clone()), "energy");
+        for l in [100.0, 0.1, 0.01, 1e-3, 1e-5] {
+            let found = value(&file(l, analysis.clone()), "energy") / l.powi(3);
+            assert!(
+                (found - of_metre).abs() < 1e-7 * of_metre,
+                "{l}, {analysis}: {found} {of_metre}"
+            );
+        }
     }
 }

@@ -207,3 +207,36 @@ fn vibrations_about_a_turned_hinge_are_those_of_its_motor() {
     let motor = values(&of(first, 1.0, Value::Null, weak[3]));
     near(&weak[..3], &motor[..3], 1e-6);
 }
+
+/// A slide far from where it began is no singular position: the same motion as about a joint a metre away.
+#[test]
+fn a_slide_may_begin_near_the_origin() {
+    let slider = |at: f64, motor: Value| {
+        json!({
+            "version": 1, "name": "slider", "gravity": [0, 0, 0],
+            "bodies": {"block": {"shape": {"sphere": {"radius": 0.1}}, "mass": 0.3}},
+            "joints": {"slide": {"prismatic": {"between": ["block", "ground"], "at": [at, 0, 0], "axis": [1, 0, 0],
+                                               "start": {"slide": {"displacement": -0.005, "rate": -0.5}}}}},
+            "loads": {"servo": {"controller": {"joint": "slide", "proportional": 200, "derivative": 8, "reference": 0.3, "motor": motor}}},
+            "simulation": {"duration": 1, "tolerance": 1e-11},
+            "functions": {
+                "slide": {"final": {"slide": {"joint": "slide"}}},
+                "rate": {"final": {"slide_rate": {"joint": "slide"}}},
+                "effort": {"final": {"effort": {"load": "servo"}}},
+                "acceleration": {"final": {"acceleration": {"body": "block", "direction": [1, 0, 0]}}}
+            }
+        })
+    };
+    for motor in [
+        json!({"gear_ratio": 5, "lag": 0.06, "rotor_inertia": 0.02}),
+        json!({"lag": 0.06}),
+    ] {
+        let [near, far] = [0.0, 1.0].map(|at| values(&slider(at, motor.clone())));
+        for (near, far) in near.iter().zip(&far) {
+            assert!(
+                (near - far).abs() <= 1e-7 * far.abs(),
+                "{motor}: {near} {far}"
+            );
+        }
+    }
+}

@@ -2,7 +2,7 @@
 //! what has none.
 
 use super::machines_at_rest::{fault, hinge, machine, rod};
-use crate::reference::documents::{problem as parsed, value, values};
+use crate::reference::documents::{problem as parsed, value, values, vary};
 use crate::reference::gradients::{gradients_are_exact, gradients_are_slopes};
 use flexbody_driver::{Simulated, check};
 use nalgebra::{DMatrix, SymmetricEigen};
@@ -613,5 +613,76 @@ fn frequencies_under_a_following_force_are_those_with_damping() {
             (plain - damped).abs() < 1e-9 * damped,
             "{mode}: {plain} {damped}"
         );
+    }
+}
+
+/// A torque and a force that follows the body have a potential about a hinge, though not in space: 10 φ + 5 φ³ = m + 0.8 F.
+#[test]
+fn frequencies_under_loads_that_follow_have_exact_derivatives() {
+    let document = json!({
+        "version": 1, "name": "follower", "analysis": "rest", "gravity": [0, 0, 0],
+        "bodies": {"bar": {
+            "shape": {"box": {"size": [0.3, 0.1, 0.1]}}, "mass": 1,
+            "points": {"a": [-0.4, 0, 0], "e": [0.4, 0, 0]}, "place": {"put": "a", "at": [0, 0, 0]}
+        }},
+        "joints": {"hinge": hinge(["bar", "ground"], json!("bar.a"))},
+        "loads": {
+            "spring": {"torsion_spring": {"joint": "hinge", "stiffness": 10, "cubic": 5}},
+            "torque": {"torque": {"body": "bar", "direction": [0, 0, 1], "magnitude": 3}},
+            "force": {"force": {"body": "bar", "point": "e", "direction": [0, 1, 0], "magnitude": 3, "axes": "body"}}
+        },
+        "functions": {
+            "f": {"frequency": {"mode": 1}},
+            "damped": {"frequency": {"mode": 1, "damped": true}},
+            "low": {"lowest_frequency": {"rho": 10}},
+            "angle": {"final": {"angle": {"joint": "hinge"}}}
+        },
+        "variables": {"m": {"path": "/loads/torque/magnitude", "lower": 0.1, "upper": 6}}
+    });
+    let problem = parsed(&document);
+    let values = values(&document);
+    let angle = values[3];
+    let stiffness = 10.0 + 15.0 * angle * angle;
+    let inertia = (0.3 * 0.3 + 0.1 * 0.1) / 12.0 + 0.16;
+    let frequency = (stiffness / inertia).sqrt() / (2.0 * PI);
+    assert_near(&values[..3], &[frequency; 3], 1e-12);
+    let slope = frequency * 15.0 * angle / (stiffness * stiffness);
+    for derivative in &check(&problem, &problem.start()).expect("derivatives")[..3] {
+        assert_near(&[derivative.adjoint], &[slope], 1e-11);
+    }
+}
+
+/// Two links about oblique axes under such loads: derivatives are slopes, damped or not.
+#[test]
+fn frequencies_of_spatial_machines_under_loads_that_follow() {
+    for part in [0.0, 1.0, 4.0] {
+        let mut document = json!({
+            "version": 1, "name": "links", "analysis": "rest", "gravity": [1, -2, 0.5],
+            "bodies": {
+                "a": {"shape": {"box": {"size": [0.3, 0.2, 0.1]}}, "mass": 1, "points": {"e": [0.4, 0.1, 0]}, "place": {"at": [0.4, 0, 0]}},
+                "b": {"shape": {"box": {"size": [0.2, 0.1, 0.3]}}, "mass": 2, "points": {"e": [0.1, 0.3, 0.2]}, "place": {"at": [1, 0.1, 0]}}
+            },
+            "joints": {
+                "first": {"universal": {"between": ["a", "ground"], "at": [0, 0, 0], "axis": [0, 0.3, 1], "cross": [0, 1, -0.3]}},
+                "second": {"revolute": {"between": ["b", "a"], "at": "a.e", "axis": [0.5, -1, 0.7]}}
+            },
+            "loads": {
+                "b1": {"bushing": {"joint": "first", "stiffness": {"rotation": [30, 40, 50]}}},
+                "s2": {"torsion_spring": {"joint": "second", "stiffness": 20}},
+                "torque": {"torque": {"body": "b", "direction": [1, 0.4, -0.6], "magnitude": part}},
+                "force": {"force": {"body": "b", "point": "e", "direction": [0.2, 1, 0.3], "magnitude": part, "axes": "body"}}
+            },
+            "functions": {"f1": {"frequency": {"mode": 1}}, "f2": {"frequency": {"mode": 2}}, "f3": {"frequency": {"mode": 3}}}
+        });
+        let mut paths = vec!["/bodies/b/mass", "/loads/s2/torsion_spring/stiffness"];
+        if part > 0.0 {
+            paths.extend([
+                "/loads/torque/torque/magnitude",
+                "/loads/force/force/magnitude",
+            ]);
+        }
+        let paths: Vec<String> = paths.into_iter().map(str::to_owned).collect();
+        vary(&mut document, &paths);
+        gradients_are_slopes(&parsed(&document), 0.0, &document);
     }
 }

@@ -8,6 +8,8 @@ use crate::system::placement::length_scale;
 
 /// Below this exponent the weight of a soft maximum is negligible: e^-72 is ε².
 const COLD: f64 = -72.0;
+/// Largest difference of exponents of neighbouring nodes between which a rule sees a peak.
+const RESOLVED: f64 = 3.0;
 /// Round-off of a quantity, relative to its natural size.
 const NOISE: f64 = 1e3 * f64::EPSILON;
 /// Largest number of cells of a step, and largest factor by which it may grow at once.
@@ -32,8 +34,8 @@ struct Sum {
     sizes: Vec<f64>,
     /// The integrand at every sample, relative to the whole.
     terms: Vec<f64>,
-    /// Whether samples with negligible weight need no cells.
-    soft: bool,
+    /// Of a soft maximum the logarithms of the sizes: where they are very small, no cells are needed.
+    exponents: Option<Vec<f64>>,
 }
 
 impl Sum {
@@ -43,7 +45,7 @@ impl Sum {
         Sum {
             sizes: add(self.sizes, other.sizes),
             terms: add(self.terms, other.terms),
-            soft: self.soft && other.soft,
+            exponents: None,
         }
     }
 }
@@ -73,11 +75,19 @@ pub fn resolution(
         };
         let share = goal / steps as f64;
         let (mut at, mut total) = (0, 0.0);
+        let ends: Vec<usize> = std::iter::once(0)
+            .chain((1..=steps).scan(0, |at, k| {
+                *at += run.grid.step(k).nodes();
+                Some(*at)
+            }))
+            .collect();
         for k in 1..=steps {
             let step = run.grid.step(k);
-            let next = at + step.nodes();
+            let next = ends[k];
             let width = step.end - step.from;
-            let (wanted, error) = sum.step(at..next + 1, width, step.cells, share);
+            let beside = &ends[k.saturating_sub(2)..(k + 2).min(ends.len())];
+            let bound = sum.bound(at..next + 1, beside);
+            let (wanted, error) = sum.step(at..next + 1, (width, bound), step.cells, share);
             total += error;
             found.cells[k - 1] = found.cells[k - 1].max(wanted);
             at = next;
@@ -92,23 +102,50 @@ pub fn resolution(
 }
 
 impl Sum {
-    /// Number of cells that a step with these nodes needs, and the error of the sum over it.
+    /// A bound of the sizes in a step of a soft maximum, which may have a peak between its nodes: not higher above them than the
+    /// exponents at the ends of steps `beside` it differ.
+    fn bound(&self, nodes: std::ops::Range<usize>, beside: &[usize]) -> Option<f64> {
+        let exponents = self.exponents.as_ref()?;
+        let highest = (exponents[nodes].iter()).fold(f64::NEG_INFINITY, |m, &x| m.max(x));
+        let differences = beside
+            .windows(2)
+            .map(|two| exponents[two[1]] - exponents[two[0]]);
+        Some((highest + differences.fold(0.0, |m, x| x.abs().max(m))).exp())
+    }
+
+    /// The largest size that a peak between two of these nodes of a soft maximum may have, where exponents differ too much for a rule:
+    /// it is not higher above two neighbours that rise to it than these differ from theirs.
+    fn hidden(&self, nodes: std::ops::Range<usize>) -> f64 {
+        let Some(exponents) = &self.exponents else {
+            return 0.0;
+        };
+        let e = &exponents[nodes];
+        let beside = |i: usize| {
+            let before = (i > 0).then(|| e[i] - e[i - 1]);
+            let after = e.get(i + 2).map(|next| e[i + 1] - next);
+            let rises = [before, after].into_iter().flatten().all(|x| x >= 0.0);
+            let margins = [before, after, Some((e[i + 1] - e[i]).abs())];
+            let margin = margins.into_iter().flatten().fold(0.0, f64::max);
+            (rises && margin > RESOLVED).then(|| e[i].max(e[i + 1]) + margin)
+        };
+        let highest = (0..e.len().saturating_sub(1)).filter_map(beside);
+        highest.fold(f64::NEG_INFINITY, f64::max).exp().min(1.0)
+    }
+
+    /// Number of cells that a step with these nodes needs, and the error of the sum over it. Its sizes are below `bound`, if there is one.
     fn step(
         &self,
         nodes: std::ops::Range<usize>,
-        width: f64,
+        (width, bound): (f64, Option<f64>),
         cells: usize,
         share: f64,
     ) -> (u32, f64) {
-        let (sizes, terms) = (&self.sizes[nodes.clone()], &self.terms[nodes]);
-        let least = match self.soft && sizes.iter().all(|&size| size < COLD.exp()) {
-            true => 0,
-            false => 1,
-        };
+        let (sizes, terms) = (&self.sizes[nodes.clone()], &self.terms[nodes.clone()]);
+        let least = u32::from(bound.is_none_or(|bound| bound >= COLD.exp()));
         if cells == 0 {
             // Values at the two ends give no estimate: the whole is uncertain.
             let error = 0.5 * width * (sizes[0] + sizes[sizes.len() - 1]);
-            return (least, error);
+            return (least, error.max(width * bound.unwrap_or(0.0).min(1.0)));
         }
         let part = width / cells as f64;
         let cell = |i: usize| {
@@ -126,7 +163,8 @@ impl Sum {
                 0.0
             }
         };
-        let error: f64 = (0..cells).map(cell).sum();
+        let seen: f64 = (0..cells).map(cell).sum();
+        let error = seen.max(part * self.hidden(nodes));
         if least == 0 {
             return (0, error);
         }
@@ -248,12 +286,11 @@ fn sum_over(
 ) -> Sum {
     let all = of.sample(&scene.model, run);
     let values: Vec<f64> = nodes.iter().map(|&k| all[k]).collect();
-    let terms: Vec<f64> = match rho {
+    let top = values.iter().fold(f64::NEG_INFINITY, |m, &g| m.max(g));
+    let exponents = rho.map(|rho| values.iter().map(|g| rho * (g - top)).collect::<Vec<f64>>());
+    let terms: Vec<f64> = match &exponents {
         None => values,
-        Some(rho) => {
-            let top = values.iter().fold(f64::NEG_INFINITY, |m, &g| m.max(g));
-            values.iter().map(|g| (rho * (g - top)).exp()).collect()
-        }
+        Some(exponents) => exponents.iter().map(|x| x.exp()).collect(),
     };
     let weighed = terms.iter().zip(nodes);
     let total: f64 = weighed.map(|(x, &k)| x.abs() * run.weights[k]).sum();
@@ -269,6 +306,6 @@ fn sum_over(
     Sum {
         sizes: terms.iter().map(|x| x.abs() * scale).collect(),
         terms: terms.iter().map(|x| x * scale).collect(),
-        soft: rho.is_some(),
+        exponents: exponents.map(|all| all.into_iter().map(|x| x + scale.ln()).collect()),
     }
 }

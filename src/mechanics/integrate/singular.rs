@@ -12,14 +12,14 @@ use crate::system::accelerations::Accelerations;
 
 /// Number of right sides. A single one may be nearly orthogonal to the dependent combination of
 /// rows.
-const PROBES: usize = 3;
+const PROBES: usize = 4;
 /// Below this ratio of steadiness to its largest value, its zero is estimated.
 const NEAR: f64 = 0.6;
 /// Smallest distance of a step's end from a singular position, as a fraction of the step.
 const AWAY: f64 = 0.33;
 /// Largest error of accelerations by round-off at the ends of steps, relative to the tolerance, and
 /// the smallest tolerance for this.
-const NOISE: f64 = 10.0;
+const NOISE: f64 = 3.0;
 const LEAST: f64 = 1e-11;
 /// Largest magnification at the end of steps: for any tolerance, and for given steps.
 const MOST: f64 = 1e3;
@@ -55,7 +55,8 @@ impl<S: SolveScalar> Steadiness<S> {
         }
     }
 
-    /// The steadiness where `field` is evaluated and factorised, relative to the scene's scale.
+    /// The steadiness where `field` is evaluated and factorised, for errors that move the bodies of each joint by about the scene's
+    /// scale. So a slide far from where it began does not count as a singular position.
     pub fn of(&mut self, field: &mut Accelerations<S>, scale: &Scale) -> f64 {
         let nv = field.numbering.velocities();
         let speeds = Speeds::without_states([scale.length, 1.0]);
@@ -63,13 +64,7 @@ impl<S: SolveScalar> Steadiness<S> {
         for probe in 0..PROBES {
             let (upper, lower) = self.rhs.split_at_mut(nv);
             upper.fill(S::zero());
-            for (i, rate) in lower.iter_mut().enumerate() {
-                let unit = match field.is_length(i) {
-                    true => scale.length,
-                    false => 1.0,
-                };
-                *rate = S::from(unit * irregular(PROBES * i + probe));
-            }
+            field.rates_of_joints(scale.length, |k| irregular(PROBES * k + probe), lower);
             field.solve(&mut self.rhs);
             sum += scale.square(field.numbering, &self.still, &self.rhs[..nv], &speeds);
         }

@@ -175,6 +175,13 @@ pub(super) struct Designs {
 }
 
 impl Designs {
+    /// Whether the scenes of all designs have these numbers of parts.
+    pub fn all_have(&self, parts: [usize; 3]) -> bool {
+        self.others
+            .iter()
+            .all(|scene| super::parts(&scene.model) == parts)
+    }
+
     /// The scenes that `real` and `dual` make.
     pub fn new(
         real: &dyn Fn(&[f64]) -> Scene<f64>,

@@ -75,6 +75,13 @@ pub struct Lowering {
     kept: Vec<Kept>,
     /// By joint: rows that are redundant after the reductions.
     redundant: Vec<Vec<ConstraintRow>>,
+    /// Numbers of parts of the scenes.
+    parts: [usize; 3],
+}
+
+/// Numbers of bodies, with those that carry elastic coordinates, of joints and of loads.
+fn parts<S>(model: &Model<S>) -> [usize; 3] {
+    [model.bodies.len(), model.joints.len(), model.loads.len()]
 }
 
 impl Lowering {
@@ -85,10 +92,11 @@ impl Lowering {
         variables: &[Range],
     ) -> Self {
         let mut designs = Designs::new(real, dual, variables);
-        if shakes(&designs.start) {
-            return Self::none();
+        if let Some(none) = Self::of_unlike(&designs) {
+            return none;
         }
         let model = &designs.start.model;
+        let parts = parts(model);
         if model.is_entangled() {
             return Self::of_flexible(&designs);
         }
@@ -114,6 +122,7 @@ impl Lowering {
             fixed,
             kept,
             redundant: Vec::new(),
+            parts,
         };
         if !(found.welded.is_empty() && found.non_rotating.is_empty() && found.fixed.is_empty()) {
             let mut lowered = designs.start;
@@ -133,20 +142,27 @@ impl Lowering {
         variables: &[Range],
     ) -> Self {
         let designs = Designs::new(real, dual, variables);
-        match shakes(&designs.start) {
-            true => Self::none(),
-            false => Self::of_plane_and_points(Plane::find(&designs), (Vec::new(), Vec::new())),
-        }
+        Self::of_unlike(&designs).unwrap_or_else(|| {
+            let plane = Plane::find(&designs);
+            Self::of_plane_and_points(&designs, plane, (Vec::new(), Vec::new()))
+        })
     }
 
-    /// No reduction, as a function looks at vibrations of the whole machine.
-    fn none() -> Self {
-        let what = "a function looks at vibrations of the whole machine in all directions";
+    /// No reduction, if a function looks at vibrations of the whole machine, or designs have other parts than the start.
+    fn of_unlike(designs: &Designs) -> Option<Self> {
+        let what = if shakes(&designs.start) {
+            "a function looks at vibrations of the whole machine in all directions"
+        } else if !designs.all_have(parts(&designs.start.model)) {
+            "the number of bodies, joints or elastic coordinates depends on the design"
+        } else {
+            return None;
+        };
         let plane = Kept {
             reduction: "a plane".to_owned(),
             obstacles: vec![ViolatedCondition::plain(what)],
         };
-        Self::of_plane_and_points(Err(plane), (Vec::new(), Vec::new()))
+        let none = (Vec::new(), Vec::new());
+        Some(Self::of_plane_and_points(designs, Err(plane), none))
     }
 
     /// The reductions of scenes with flexible bodies, couplings or controllers: a plane, or else the rotation of bodies that
@@ -158,10 +174,11 @@ impl Lowering {
         if plane.is_err() {
             points = find_points(designs, |body| model.is_of_flexible(body), &mut kept);
         }
-        Self::of_plane_and_points(plane, (points, kept))
+        Self::of_plane_and_points(designs, plane, (points, kept))
     }
 
     fn of_plane_and_points(
+        designs: &Designs,
         plane: Result<Plane, Kept>,
         (points, kept): (Vec<usize>, Vec<Kept>),
     ) -> Self {
@@ -173,6 +190,7 @@ impl Lowering {
             fixed: Fixed::default(),
             kept,
             redundant: Vec::new(),
+            parts: parts(&designs.start.model),
         }
     }
 
@@ -189,6 +207,9 @@ impl Lowering {
     /// Applies the reductions to `scene` and returns true. If its design violates a condition, it
     /// returns false and leaves `scene` as it is.
     pub fn apply<S: Scalar>(&self, scene: &mut Scene<S>) -> bool {
+        if parts(&scene.model) != self.parts {
+            return false;
+        }
         if self.welded.is_empty() {
             let admitted = self.admits(scene);
             if admitted {

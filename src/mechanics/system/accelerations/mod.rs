@@ -9,6 +9,7 @@
 mod pull_back;
 
 use crate::linalg::{Pivots, SingularMatrix, SolveScalar};
+use crate::math::Vec3;
 use crate::model::Model;
 use crate::system::bodies::{self, BodyMotion, all_force_balances, velocities_of};
 use crate::system::constraint::RowGradient;
@@ -414,6 +415,33 @@ impl<'a, S: SolveScalar> Accelerations<'a, S> {
         joints::rates_from_gradients(model, numbering, &self.gradients, v, out);
         joints::add_driven_rates(&self.here(), out);
         self.left_out.clear(out);
+    }
+
+    /// The rates of the constraints where the bodies of each joint that can move do so by numbers of their own, in lengths of
+    /// `length` and radians: of the size that the joint gives to such motions, at any lever arm.
+    pub fn rates_of_joints(&self, length: f64, number: impl Fn(usize) -> f64, out: &mut [S]) {
+        const NUMBERS: usize = 18;
+        let moves = |body: usize| self.numbering.unknowns_of(body) > 0;
+        for (j, joint) in self.model.joints.iter().enumerate() {
+            let three = |k: usize, size: f64| {
+                Vec3::from_fn(|i, _| S::from(size * number(NUMBERS * j + 3 * k + i)))
+            };
+            let side = |k: usize, moves: bool| match moves {
+                true => [three(k, length), three(k + 1, 1.0)],
+                false => [Vec3::zeros(); 2],
+            };
+            let a = side(0, moves(joint.body_a));
+            let b = side(2, joint.body_b.is_some_and(moves));
+            let local = side(4, true);
+            for i in self.numbering.rows(j) {
+                let row = &self.gradients[i];
+                out[i] = row.force.dot(&(a[0] - b[0]))
+                    + row.torque_a.dot(&a[1])
+                    + row.torque_b.dot(&b[1])
+                    + row.local_force.dot(&local[0])
+                    + row.local_torque.dot(&local[1]);
+            }
+        }
     }
 
     /// Whether row i is a length \[m\], not a product of two axes.

@@ -208,7 +208,7 @@ impl Solver<'_> {
         let finite = change.iter().all(|x| x.is_finite());
         Step {
             size: match finite {
-                true => self.layout.moved(&change, self.scale),
+                true => self.moved(x, &change),
                 false => f64::NAN,
             },
             curvature: gaps - dot(&residual[y.clone()], &change[y.clone()]),
@@ -241,7 +241,7 @@ impl Solver<'_> {
     /// Leaves an equilibrium by the motion `along`, onwards as the machine came by `last`.
     fn leave(&self, x: &mut State<f64>, along: &[f64], last: &[f64]) {
         let y = self.layout.groups()[0].clone();
-        let length = LEFT_BY / self.layout.moved(along, self.scale);
+        let length = LEFT_BY / self.moved(x, along);
         let back = dot(&along[y.clone()], &last[y]) < 0.0;
         let length = if back { -length } else { length };
         let step: Vec<f64> = along.iter().map(|x| length * x).collect();

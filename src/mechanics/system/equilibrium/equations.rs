@@ -169,15 +169,8 @@ impl<'a> Layout<'a> {
         out
     }
 
-    /// Largest change of a position, rotations in radians, displacements relative to the length
-    /// `scale`.
-    pub(super) fn moved(&self, change: &[f64], scale: f64) -> f64 {
-        let y = self.expanded(change[self.groups()[0].clone()].to_vec());
-        let all = y.chunks_exact(6).enumerate();
-        all.fold(0.0, |size, (i, six)| size.max(self.moved_of(i, six, scale)))
-    }
-
-    /// The same of body i, of its six components of y.
+    /// Change of the position of body i, of its six components of y: a rotation in radians, or a displacement relative to the
+    /// length `scale`.
     pub(super) fn moved_of(&self, i: usize, six: &[f64], scale: f64) -> f64 {
         let part = |x: &[f64]| dot(x, x).sqrt();
         let of_place = if self.angles[i] { 1.0 } else { scale };

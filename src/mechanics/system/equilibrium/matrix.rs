@@ -65,6 +65,11 @@ impl Factors {
     pub(super) fn solve(&mut self, b: &mut [f64]) {
         self.factors.solve(b);
     }
+
+    /// Solves with the transpose in place.
+    pub(super) fn solve_transposed(&mut self, b: &mut [f64]) {
+        self.factors.solve_transposed(b);
+    }
 }
 
 impl std::fmt::Debug for Factors {
@@ -97,12 +102,11 @@ impl RigidMetric {
     /// angle in most cases, and its mass an inertia. Elastic coordinates have their own mass alone: they are displacements and angles,
     /// and stiffness makes their matrices regular.
     pub(super) fn of_body(&self, body: &RigidBody<f64>) -> [f64; 2] {
-        let more = match body.role {
-            Role::Elastic => 0.0,
-            role if role.is_angle() => self.inertia,
-            _ => self.mass,
-        };
-        [body.mass + more, self.inertia]
+        match body.role {
+            Role::Elastic => [body.mass, 0.0],
+            role if role.is_angle() => [body.mass + self.inertia, self.inertia],
+            _ => [body.mass + self.mass, self.inertia],
+        }
     }
 }
 

@@ -555,7 +555,7 @@ impl Solver<'_> {
             if !change.iter().all(|x| x.is_finite()) {
                 return Err(none(iteration));
             }
-            let size = self.layout.moved(&change, self.scale);
+            let size = self.moved(&x, &change);
             let part = (LARGEST / size).min(1.0);
             let step: Vec<f64> = change.iter().map(|x| part * x).collect();
             self.layout.advance(&mut x, &step);

@@ -4,11 +4,12 @@
 //! K y + Gᵀ μ = ω² M y,     G y = 0,     K = −∂f/∂q + ∂(Gᵀ λ)/∂q
 //! ```
 //!
-//! K is symmetric if the loads have a potential; else see [`super::damped`]. The largest eigenvalues 1 / (ω² + σ) of [K + σ M̃, Gᵀ; G, 0]⁻¹ M by
+//! K is symmetric if the loads have a potential; else see [`super::damped`]. If it is so but for motions that the joints do not allow,
+//! the multipliers of Kᵀ are others than μ. The largest eigenvalues 1 / (ω² + σ) of [K + σ M̃, Gᵀ; G, 0]⁻¹ M by
 //! Lanczos, then Rayleigh and Ritz with K itself in their space. With yᵀ M y = 1 an eigenvalue has the derivative
 //!
 //! ```text
-//! dω² = yᵀ (dK − ω² dM) y + 2 μᵀ dG y
+//! dω² = yᵀ (dK − ω² dM) y + (μ + μ_L)ᵀ dG y,     Kᵀ y + Gᵀ μ_L = ω² M y,
 //! ```
 //!
 //! along the change of rest, so it is exact to first order where y and μ stay.
@@ -32,6 +33,8 @@ use nalgebra::DMatrix;
 const SPARE: usize = 3;
 /// Part of the stiffness that may be asymmetric by round-off.
 const ASYMMETRIC: f64 = 1e-7;
+/// The difference of left and right shapes with yᵀ M y = 1 that is round-off.
+const DIFFERENT: f64 = 1e-9;
 /// Relative distance of eigenvalues that are equal.
 const SAME: f64 = 1e-9;
 
@@ -112,6 +115,9 @@ pub(super) struct Mode {
     square: f64,
     /// y and μ, with yᵀ M y = 1.
     pub shape: Vec<f64>,
+    /// y and the multipliers of Kᵀ y + Gᵀ μ_L = ω² M y, if they are others. Loads that follow a body may have a potential in all
+    /// motions that the joints allow, and none in others.
+    left: Option<Vec<f64>>,
     /// Whether another one has the same frequency, so that it has no derivative.
     repeated: bool,
 }
@@ -222,7 +228,7 @@ impl Solver<'_> {
         let allowed = (softened.order().saturating_sub(rows)).saturating_sub(free.len());
         let mut count = wanted.least();
         let mut shift = self.least_shift(found);
-        let out = loop {
+        let mut out = loop {
             let (mut space, mut all) = match allowed {
                 0 => (Vec::new(), true),
                 _ => softened.largest(&free, (count + SPARE).min(allowed)),
@@ -268,8 +274,37 @@ impl Solver<'_> {
             }
             count = (2 * count).min(MOST_MODES);
         };
+        let symmetric = (self.model.loads.iter()).all(|load| load.kind.has_potential())
+            || self.find_left(&mut softened, shift, (&free, &mut out));
         self.lower_shift(&mut softened, found, shift)?;
-        Ok(Some(out))
+        Ok(symmetric.then_some(out))
+    }
+
+    /// Finds the left multipliers of modes, by the factors of K + σ M̃; false if left shapes differ from the right ones.
+    fn find_left(
+        &self,
+        softened: &mut Softened,
+        shift: f64,
+        (free, modes): (&Basis, &mut [Mode]),
+    ) -> bool {
+        let (layout, model) = (self.layout, self.model);
+        let n = layout.numbering.unknowns();
+        modes.iter_mut().all(|mode| {
+            let y = &mode.shape[..n];
+            let heavy = layout.mass_product(model, softened.motions, y);
+            let mut left = self.metric_product(softened.motions, y);
+            left.iter_mut().for_each(|x| *x *= shift);
+            add_scaled(&mut left, mode.square, &heavy);
+            left.resize(layout.order(), 0.0);
+            softened.factors.solve_transposed(&mut left);
+            let mut apart: Vec<f64> = left.iter().zip(y).map(|(l, y)| l - y).collect();
+            free.orthogonalise(&mut apart);
+            let moved = layout.mass_product(model, softened.motions, &apart);
+            let alike = dot(&moved, &apart) <= DIFFERENT * DIFFERENT;
+            left[..n].copy_from_slice(y);
+            mode.left = Some(left);
+            alike
+        })
     }
 
     /// Makes the factors with the least σ again, if they are with a larger one. Kept ones are the same as new ones.
@@ -344,6 +379,7 @@ impl Solver<'_> {
             Mode {
                 square,
                 shape,
+                left: None,
                 repeated: near(k, k + 1) || k > 0 && near(k - 1, k),
             }
         };
@@ -419,18 +455,23 @@ pub(super) fn vibrations<S: Scalar>(
     if S::INFINITESIMAL {
         let real = |x: f64| Complex64::new(x, 0.0);
         let [y, _, _, lambda, ..] = layout.groups();
-        let shape = |mode: &Mode| -> Vec<Complex64> {
-            let both = mode.shape[y.clone()]
-                .iter()
-                .chain(&mode.shape[lambda.clone()]);
+        let complex = |shape: &[f64]| -> Vec<Complex64> {
+            let both = shape[y.clone()].iter().chain(&shape[lambda.clone()]);
             both.map(|&x| real(x)).collect()
         };
-        let shapes: Vec<_> = modes.iter().map(shape).collect();
-        let pairs = shapes.iter().zip(modes).map(|(shape, mode)| Between {
-            left: shape,
-            right: shape,
-            factors: [real(1.0), real(0.0), real(-mode.square)],
-        });
+        let sides = |mode: &Mode| {
+            let left = mode.left.as_ref().unwrap_or(&mode.shape);
+            [left, &mode.shape].map(|own| complex(own))
+        };
+        let shapes: Vec<_> = modes.iter().map(sides).collect();
+        let pairs = shapes
+            .iter()
+            .zip(modes)
+            .map(|([left, right], mode)| Between {
+                left,
+                right,
+                factors: [real(1.0), real(0.0), real(-mode.square)],
+            });
         let pairs: Vec<Between> = pairs.collect();
         // The real parts are zero but for what is not converged.
         let sums = contracted(at, &pairs).into_iter();

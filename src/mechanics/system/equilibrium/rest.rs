@@ -13,7 +13,7 @@ use super::released::Released;
 use super::ritz::ritz_vectors;
 use super::{KnownStarts, Solver, Sought, at_solution};
 use crate::math::slices::{add_scaled, dot};
-use crate::model::Model;
+use crate::model::{Model, Role};
 use crate::system::bodies::BodyMotion;
 use crate::system::failure::AssemblyFailure;
 
@@ -114,9 +114,7 @@ impl Solver<'_> {
             factors.solve(&mut x);
             let reactions = x[lambda.clone()].iter();
             let largest = reactions.fold(0.0_f64, |most, x| most.max(x.abs()));
-            self.layout
-                .moved(&x, self.scale)
-                .max(of_reactions * largest)
+            self.moved(found, &x).max(of_reactions * largest)
         });
         // Round-off of springs without tension, which do not push along free motions.
         let force = self.mass * found.rate * self.scale;
@@ -298,6 +296,38 @@ impl Solver<'_> {
             (dot(held, &y) / dot(&weighted(&y), &y), y)
         };
         Ok(soft.into_iter().map(stiffness).collect())
+    }
+
+    /// Largest change of a position at x, rotations in radians, displacements relative to the length of the scene. Elastic
+    /// coordinates are displacements and angles, of nodes and of modes. They count by the mean square of what they move over
+    /// the mass of the machine.
+    pub(super) fn moved(&self, x: &State<f64>, change: &[f64]) -> f64 {
+        let layout = self.layout;
+        let y = layout.expanded(change[layout.groups()[0].clone()].to_vec());
+        let is_elastic = |i: usize| self.model.bodies[i].role == Role::Elastic;
+        let bodies = y.chunks_exact(6).enumerate();
+        let rigid = bodies.filter(|&(i, _)| !is_elastic(i));
+        let of_rigid = rigid.fold(0.0_f64, |size, (i, six)| {
+            // NaN stays.
+            let own = layout.moved_of(i, six, self.scale);
+            if own > size || own.is_nan() {
+                own
+            } else {
+                size
+            }
+        });
+        if self.model.flexible.is_empty() {
+            return of_rigid;
+        }
+        let mut elastic = y;
+        let of_bodies = elastic.chunks_exact_mut(6).enumerate();
+        for (_, six) in of_bodies.filter(|&(i, _)| !is_elastic(i)) {
+            six.fill(0.0);
+        }
+        let elastic = layout.compressed(elastic);
+        let motions = layout.at_rest(&x.q);
+        let square = dot(&self.metric_product(&motions, &elastic), &elastic);
+        of_rigid.max((square / self.mass).sqrt() / self.scale)
     }
 
     /// M̃ y, both for unknowns of velocity.

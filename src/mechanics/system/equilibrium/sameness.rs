@@ -63,7 +63,7 @@ impl Solver<'_> {
         change[y.end..].fill(0.0);
         there.solve(&mut change);
         let n = y.len();
-        if layout.moved(&change, self.scale) * shift > SAME * rate {
+        if self.moved(&other, &change) * shift > SAME * rate {
             return Err(self.not_alike(&change[..n], "other forces"));
         }
         change[y].fill(0.0);

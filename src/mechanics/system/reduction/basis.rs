@@ -228,7 +228,7 @@ fn static_solutions(matrices: &mut Matrices, spaces: &Spaces, deflection: f64) -
     let lowest = squares.iter().copied().fold(f64::INFINITY, f64::min);
     for (pattern, square) in patterns.into_iter().zip(squares) {
         let deflection = deflection * lowest / square;
-        let largest = largest_displacement(matrices.shells, &pattern);
+        let largest = largest_displacement(matrices, &pattern);
         let force = matrices.stiff(&pattern);
         for sign in signs {
             let (mut at, mut before) = (vec![0.0; pattern.len()], 0.0);
@@ -248,14 +248,16 @@ fn static_solutions(matrices: &mut Matrices, spaces: &Spaces, deflection: f64) -
     out
 }
 
-/// The largest displacement of a node.
-fn largest_displacement(shells: &FiniteElements<f64>, x: &[f64]) -> f64 {
-    let nodes = shells.mesh.displacements.iter();
+/// The largest displacement of a node, or the mean one over the mass, as of a beam that twists.
+fn largest_displacement(matrices: &Matrices, x: &[f64]) -> f64 {
+    let nodes = matrices.shells.mesh.displacements.iter();
     let sizes = nodes.map(|of| {
         let squares = of.iter().flatten().map(|&i| x[i] * x[i]);
         squares.sum::<f64>().sqrt()
     });
-    sizes.fold(f64::MIN_POSITIVE, f64::max)
+    let (mass, _) = matrices.shells.rigid();
+    let mean = (dot(&matrices.heavy(x), x) / mass).sqrt();
+    sizes.fold(mean.max(f64::MIN_POSITIVE), f64::max)
 }
 
 /// ψ_ij of the bending vectors at amplitudes as under one load: as the squares of their frequencies, inversely.
@@ -263,7 +265,7 @@ fn companions(matrices: &mut Matrices, spaces: &mut Spaces, tolerance: f64) -> V
     let (space, frequencies) = std::mem::take(&mut spaces.bending).vibrations(matrices);
     let amplitude = |i: usize| (frequencies[0] / frequencies[i]).powi(2);
     let scaled = |i: usize| -> Vec<f64> {
-        let size = 1.0 / largest_displacement(matrices.shells, &space.vectors[i]);
+        let size = 1.0 / largest_displacement(matrices, &space.vectors[i]);
         space.vectors[i].iter().map(|x| x * size).collect()
     };
     let all: Vec<Vec<f64>> = (0..space.vectors.len()).map(scaled).collect();

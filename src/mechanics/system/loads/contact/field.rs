@@ -7,10 +7,11 @@
 //! H (δu, δv) = (S_u·δr, S_v·δr),   H = S_iᵀS_k − (r − S)·S_ik,   δd = N·δr
 //! ```
 //!
-//! Newton's method on the distance finds u and v from the place below the centre; its last two steps, which are in the scalar, bring the
-//! derivatives.
+//! Newton's method on the distance finds u and v from the place below the centre; its [`last_steps`], which are in the scalar, bring
+//! the derivatives.
 
 use super::cotangent::pull_direction;
+use super::last_steps::last_steps;
 use crate::math::{Scalar, Vec3, scalar::length};
 use crate::model::height_field::Height;
 use crate::model::{Contact, HeightField};
@@ -125,14 +126,14 @@ impl<S: Scalar> Foot<S> {
     ) -> (Self, Vec3<S>) {
         let [x, y, z] = axes.each_ref().map(|own| own.dot(&from));
         let r = Vec3::new(x, y, z);
-        let mut place = nearest(field, &r.map(|x| x.re())).map(S::from);
-        for _ in 0..2 {
-            let (by, _) = step(field, &r, place);
+        let start = nearest(field, &r.map(|x| x.re())).map(S::from);
+        let size = r.map(|x| x.re()).norm();
+        let place = last_steps(start, |place| {
+            let (by, _) = step(field, &r, *place);
             let next = [place[0] + by[0], place[1] + by[1]];
-            if next.iter().all(|x| x.is_finite()) {
-                place = next;
-            }
-        }
+            let finite = next.iter().all(|x| x.is_finite());
+            finite.then(|| (next, by[0].re().hypot(by[1].re()) / size))
+        });
         let height = field.at(place[0], place[1]);
         let upward = Vec3::new(-height.slope[0], -height.slope[1], S::one());
         let normal = upward / length(&upward);

@@ -14,6 +14,7 @@ mod cotangent;
 mod field;
 mod friction;
 mod geometry;
+mod last_steps;
 mod nearest;
 mod rim;
 

@@ -7,10 +7,11 @@
 //! d′(φ) = ϱ g,   g = n·e′ = 0,   g′ = ϱ e′ᵀ(∂n/∂p) e′ − n·e > 0
 //! ```
 //!
-//! Newton's method on d finds φ from the place below the axis; its last two steps, which are in the scalar, bring the derivatives.
+//! Newton's method on d finds φ from the place below the axis; its [`last_steps`], which are in the scalar, bring the derivatives.
 
 use super::cotangent::{Cotangent, RADIUS_A, WHEEL};
 use super::field::Foot;
+use super::last_steps::last_steps;
 use crate::math::scalar::{length, unit};
 use crate::math::{Scalar, Vec3};
 use crate::model::{Contact, HeightField};
@@ -80,14 +81,17 @@ impl<S: Scalar> Rim<S> {
         let real = |v: &Vec3<S>| v.map(|x| x.re());
         let seen = (ground.0.each_ref().map(real), field, real(&ground.2));
         let e = lowest(&seen, (real(&axis), radius.re())).map(S::from);
-        let mut now = Self::at(&ground, (axis, radius), unit(e - axis * axis.dot(&e)));
-        for _ in 0..2 {
-            let (sin, cos) = (-(now.rises() / now.slope)).sin_cos();
+        let start = Self::at(&ground, (axis, radius), unit(e - axis * axis.dot(&e)));
+        let now = last_steps(start, |now| {
+            let turn = -(now.rises() / now.slope);
+            let (sin, cos) = turn.sin_cos();
             let next = now.out * cos + now.ahead * sin;
-            if next.iter().all(|x| x.is_finite()) {
-                now = Self::at(&ground, (axis, radius), next);
-            }
-        }
+            let finite = next.iter().all(|x| x.is_finite());
+            finite.then(|| {
+                let next = Self::at(&ground, (axis, radius), next);
+                (next, turn.re().abs())
+            })
+        });
         let normal = now.normal;
         (now, normal)
     }
