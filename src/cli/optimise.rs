@@ -25,6 +25,22 @@ use std::path::Path;
 use std::sync::Mutex;
 use std::time::Instant;
 
+/// What one start finds. A variable that never moved, as all derivatives by it are zero, may be at a maximum.
+fn of_one_start_only(done: &driver::Optimisation) -> String {
+    let stays =
+        |name: &&String| (done.optimum.design.get(*name)).is_some_and(|x| x.value == x.start);
+    let zero = done.outcome.scaling.zero_columns.iter();
+    let unmoved: Vec<&str> = zero.filter(stays).map(String::as_str).collect();
+    match unmoved.is_empty() {
+        true => "a local optimum, as one start finds it: --starts 4 seeks better ones from other starts\n".into(),
+        false => format!(
+            "no derivative moved {}: this may be a saddle point or a maximum by it; --starts 4 seeks better points from other \
+             starts\n",
+            unmoved.join(", ")
+        ),
+    }
+}
+
 /// Optimises a problem and writes its results.
 pub(crate) fn optimise(
     job: &Job,
@@ -151,9 +167,7 @@ pub(crate) fn optimise(
             tell(&format!("{note}\n"));
         }
         if of_one_start {
-            tell(
-                "a local optimum, as one start finds it: --starts 4 seeks better ones from other starts\n",
-            );
+            tell(&of_one_start_only(&done));
         }
     }
     // Figures of an earlier run belong to its record, which stays if no new one was written.

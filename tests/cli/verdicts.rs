@@ -284,3 +284,36 @@ fn a_signal_ends_a_long_simulation() {
         }
     }
 }
+
+/// Where no derivative ever moved a variable, the end is not called an optimum.
+#[test]
+fn what_no_derivative_moves_may_be_a_saddle() {
+    let at = scratch();
+    let file = |x: f64| {
+        let document = json(&format!(
+            r#"{{
+                "version": 1, "name": "saddle", "analysis": "rest", "gravity": [0, 0, 0], "parameters": {{"x": {x}, "y": 0}},
+                "bodies": {{"box": {{"shape": {{"box": {{"size": [1, 1, 1]}}}}, "mass": 1}}}},
+                "joints": {{"weld": {{"weld": {{"between": ["box", "ground"], "at": [0, 0, 0]}}}}}},
+                "functions": {{"f": {{"expression": "(y-1)^2-x^2+x^4"}}}},
+                "variables": {{"x": {{"path": "/parameters/x", "lower": -2, "upper": 2}},
+                               "y": {{"path": "/parameters/y", "lower": -2, "upper": 2}}}},
+                "objective": {{"minimise": "f"}}
+            }}"#
+        ));
+        written(at.path(), "saddle.json", &document)
+    };
+    let told = "no derivative moved x: this may be a saddle point or a maximum by it";
+    let ran = expect(0, at.path(), &[&file(0.0), "-o", "saddle"]);
+    assert!(
+        ran.err.contains(told) || ran.out.contains(told),
+        "{}{}",
+        ran.out,
+        ran.err
+    );
+    let ran = expect(0, at.path(), &[&file(0.1), "-o", "minimum"]);
+    let optimum = optimum(&at.path().join("minimum"));
+    let x = optimum["design"]["x"]["value"].as_f64().expect("a number");
+    assert!((x - 0.5_f64.sqrt()).abs() < 1e-5, "{x}");
+    assert!(!ran.err.contains(told) && !ran.out.contains(told));
+}

@@ -637,7 +637,7 @@ fn frequencies_under_loads_that_follow_have_exact_derivatives() {
             "low": {"lowest_frequency": {"rho": 10}},
             "angle": {"final": {"angle": {"joint": "hinge"}}}
         },
-        "variables": {"m": {"path": "/loads/torque/magnitude", "lower": 0.1, "upper": 6}}
+        "variables": {"m": {"path": "/loads/torque/torque/magnitude", "lower": 0.1, "upper": 6}}
     });
     let problem = parsed(&document);
     let values = values(&document);
@@ -667,7 +667,7 @@ fn frequencies_of_spatial_machines_under_loads_that_follow() {
                 "second": {"revolute": {"between": ["b", "a"], "at": "a.e", "axis": [0.5, -1, 0.7]}}
             },
             "loads": {
-                "b1": {"bushing": {"joint": "first", "stiffness": {"rotation": [30, 40, 50]}}},
+                "b1": {"bushing": {"joint": "first", "stiffness": {"diagonal": [0, 0, 0, 30, 40, 50]}}},
                 "s2": {"torsion_spring": {"joint": "second", "stiffness": 20}},
                 "torque": {"torque": {"body": "b", "direction": [1, 0.4, -0.6], "magnitude": part}},
                 "force": {"force": {"body": "b", "point": "e", "direction": [0.2, 1, 0.3], "magnitude": part, "axes": "body"}}
@@ -684,5 +684,43 @@ fn frequencies_of_spatial_machines_under_loads_that_follow() {
         let paths: Vec<String> = paths.into_iter().map(str::to_owned).collect();
         vary(&mut document, &paths);
         gradients_are_slopes(&parsed(&document), 0.0, &document);
+    }
+}
+
+/// A beam on a soft spring has the same frequencies at every size and far from the origin, relative to it.
+#[test]
+fn soft_machines_have_the_same_frequencies_at_every_size() {
+    let file = |l: f64, at: f64| {
+        json!({
+            "version": 1, "name": "beam", "analysis": "rest", "gravity": [0, 0, 0],
+            "bodies": {"beam": {
+                "beam": {
+                    "length": l, "section": {"rectangle": {"width": 0.02 * l, "height": 0.016 * l}},
+                    "material": {"young": 1e9, "density": 1000}, "strain": "linear"
+                },
+                "place": {"put": "start", "at": [at, 0, 0]}
+            }},
+            "joints": {"hinge": hinge(["beam", "ground"], json!("beam.start"))},
+            "loads": {"spring": {"torsion_spring": {"joint": "hinge", "stiffness": 3e-4 * l.powi(3)}}},
+            "functions": {"f1": {"frequency": {"mode": 1}}, "f2": {"frequency": {"mode": 2}}}
+        })
+    };
+    let of_metre = values(&file(1.0, 0.0));
+    let inertia = 1000.0 * 0.02 * 0.016 * (1.0 / 3.0 + 0.02 * 0.02 / 12.0);
+    assert_near(
+        &of_metre[..1],
+        &[(3e-4_f64 / inertia).sqrt() / (2.0 * PI)],
+        1e-3,
+    );
+    for (l, at) in [
+        (1e3, 0.0),
+        (1e-2, 0.0),
+        (1e-4, 0.0),
+        (1e-5, 0.0),
+        (1e-3, 1.0),
+        (1.0, 1e3),
+    ] {
+        let found: Vec<f64> = values(&file(l, at)).into_iter().map(|f| f * l).collect();
+        assert_near(&found, &of_metre, 1e-6);
     }
 }

@@ -113,8 +113,8 @@ impl Sum {
         Some((highest + differences.fold(0.0, |m, x| x.abs().max(m))).exp())
     }
 
-    /// The largest size that a peak between two of these nodes of a soft maximum may have, where exponents differ too much for a rule:
-    /// it is not higher above two neighbours that rise to it than these differ from theirs.
+    /// The largest size between two of these nodes of a soft maximum where exponents differ too much for a rule. A peak there is not
+    /// higher above two neighbours that rise to it than these differ from theirs.
     fn hidden(&self, nodes: std::ops::Range<usize>) -> f64 {
         let Some(exponents) = &self.exponents else {
             return 0.0;
@@ -126,7 +126,13 @@ impl Sum {
             let rises = [before, after].into_iter().flatten().all(|x| x >= 0.0);
             let margins = [before, after, Some((e[i + 1] - e[i]).abs())];
             let margin = margins.into_iter().flatten().fold(0.0, f64::max);
-            (rises && margin > RESOLVED).then(|| e[i].max(e[i + 1]) + margin)
+            let top = e[i].max(e[i + 1]);
+            match margin > RESOLVED {
+                true if rises => Some(top + margin),
+                // A fall between two nodes, as from the end of a motion.
+                true if (e[i + 1] - e[i]).abs() > RESOLVED => Some(top),
+                _ => None,
+            }
         };
         let highest = (0..e.len().saturating_sub(1)).filter_map(beside);
         highest.fold(f64::NEG_INFINITY, f64::max).exp().min(1.0)

@@ -26,25 +26,33 @@ pub(super) fn parts<S: Scalar>() -> [Part<S>; 4] {
     ]
 }
 
-/// Σ x_I N_I and Σ x_I Θ_I with x a vector of each carrier.
+/// Σ x_I N_I and Σ x_I Θ_I; `x` gives the component of a carrier.
 pub(super) fn sums<S: Scalar>(
     modes: &Modes<S>,
-    motions: &[BodyMotion<S>],
-    of: impl Fn(&BodyMotion<S>) -> Vec3<S>,
+    x: impl Fn(usize, usize) -> S,
 ) -> (Vec3<S>, Vec3<S>) {
     let mut sums = (Vec3::zeros(), Vec3::zeros());
     let shapes = modes.displacement.iter().zip(&modes.rotation);
     for ((n, t), &(carrier, k)) in shapes.zip(&modes.places) {
-        let x = of(&motions[carrier])[k];
+        let x = x(carrier, k);
         sums.0 += n * x;
         sums.1 += t * x;
     }
     sums
 }
 
+/// The same with a vector of each carrier.
+pub(super) fn sums_of<S: Scalar>(
+    modes: &Modes<S>,
+    motions: &[BodyMotion<S>],
+    part: Part<S>,
+) -> (Vec3<S>, Vec3<S>) {
+    sums(modes, |carrier, k| part(&motions[carrier])[k])
+}
+
 /// The rotation Σ q_I Θ_I of a section, axes of its body \[rad\].
 pub fn section_rotation<S: Scalar>(modes: &Modes<S>, motions: &[BodyMotion<S>]) -> Vec3<S> {
-    sums(modes, motions, |x| x.position).1
+    sums_of(modes, motions, |x| x.position).1
 }
 
 /// The change of a frame with these displacement and rotation.
@@ -63,29 +71,13 @@ pub fn deformed_frame<S: Scalar>(
     motions: &[BodyMotion<S>],
 ) -> (JointFrame<S>, FrameMotion<S>) {
     let mut moved = *frame;
-    moved.add(&change(frame, sums(modes, motions, |x| x.position)));
+    moved.add(&change(frame, sums_of(modes, motions, |x| x.position)));
     let motion = FrameMotion {
-        rate: change(frame, sums(modes, motions, |x| x.velocity)),
-        acceleration: change(frame, sums(modes, motions, |x| x.acceleration)),
-        virtual_rate: change(frame, sums(modes, motions, |x| x.virtual_velocity)),
+        rate: change(frame, sums_of(modes, motions, |x| x.velocity)),
+        acceleration: change(frame, sums_of(modes, motions, |x| x.acceleration)),
+        virtual_rate: change(frame, sums_of(modes, motions, |x| x.virtual_velocity)),
     };
     (moved, motion)
-}
-
-/// Σ v_I N_I and Σ v_I Θ_I with the velocities v.
-pub(super) fn rates_of_frame<S: Scalar>(
-    modes: &Modes<S>,
-    numbering: &Numbering,
-    v: &[S],
-) -> (Vec3<S>, Vec3<S>) {
-    let mut sums = (Vec3::zeros(), Vec3::zeros());
-    let shapes = modes.displacement.iter().zip(&modes.rotation);
-    for ((n, t), &(carrier, k)) in shapes.zip(&modes.places) {
-        let rate = v[numbering.velocity(carrier) + k];
-        sums.0 += n * rate;
-        sums.1 += t * rate;
-    }
-    sums
 }
 
 /// Derivatives of a row's rate in the rates of the elastic coordinates, with their places among the
@@ -139,7 +131,7 @@ pub fn pull_frame(
     ];
     own.frame_a.add(by_frame);
     for (by, of) in all.into_iter().zip(parts()) {
-        let turned = sums(modes, motions, of).1;
+        let turned = sums_of(modes, motions, of).1;
         // f · (θ × e) = e · (f × θ).
         for (axis, f) in own.frame_a.axes.iter_mut().zip(&by.axes) {
             *axis += f.cross(&turned);

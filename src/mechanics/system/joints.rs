@@ -71,7 +71,8 @@ pub fn rates_from_gradients<S: Scalar>(
             true => (modes, None),
             false => (None, modes),
         };
-        let of_frame = deformed.map(|modes| attachment::rates_of_frame(modes, numbering, v));
+        let rate = |carrier: usize, k: usize| v[numbering.velocity(carrier) + k];
+        let of_frame = deformed.map(|modes| attachment::sums(modes, rate));
         for i in numbering.rows(j) {
             let g = &gradients[i];
             out[i] = g.force.dot(&relative) + g.torque_a.dot(&omega_a) + g.torque_b.dot(&omega_b);

@@ -15,7 +15,7 @@ pub fn guess<S: Scalar>(model: &Model<S>) -> (Vec<S>, Vec<S>) {
     (q, v)
 }
 
-/// As [`length_scale`], but by lengths of vectors, which turn with the scene.
+/// As [`length_scale`], but by lengths of vectors, which turn with the scene. Where all are zero, the largest radius of gyration.
 pub fn reach(model: &Model<f64>) -> f64 {
     let joints = model.joints.iter().flat_map(|j| {
         let (a, b) = (&j.frame_a, &j.frame_b);
@@ -24,10 +24,14 @@ pub fn reach(model: &Model<f64>) -> f64 {
     let bodies = model.bodies.iter().enumerate();
     let bodies = bodies.filter(|(i, _)| !model.holds_angles(*i));
     let bodies = bodies.map(|(_, b)| b.position.norm());
-    match joints.chain(bodies).fold(0.0, f64::max) {
-        0.0 => 1.0,
-        reach => reach,
-    }
+    let radii = (model.bodies.iter())
+        .map(|b| (b.inertia.trace() / b.mass).sqrt())
+        .filter(|radius| radius.is_finite());
+    let largest = joints.chain(bodies).fold(0.0, f64::max);
+    [largest, radii.fold(0.0, f64::max)]
+        .into_iter()
+        .find(|&length| length > 0.0)
+        .unwrap_or(1.0)
 }
 
 /// Length scale of a scene's gaps and motions \[m\]: its largest lever arm or coordinate of a

@@ -123,7 +123,7 @@ fn prescribed<S: Scalar>(joint: &Joint<S>, time: S) -> Course<S> {
 
 /// The sums of the coordinates of a coupling with their factors.
 fn summed<S: Scalar>(modes: &Modes<S>, motions: &[BodyMotion<S>]) -> Course<S> {
-    let sums = attachment::parts().map(|part| attachment::sums(modes, motions, part));
+    let sums = attachment::parts().map(|part| attachment::sums_of(modes, motions, part));
     Course {
         turn: sums.map(|(_, turn)| turn.z),
         slide: sums.map(|(slide, _)| slide.z),
