@@ -85,24 +85,17 @@ pub(super) struct RigidMetric {
 }
 
 impl RigidMetric {
-    /// Part of the mean mass and of the mean moment of inertia that a body has at least. Larger ones would change vibrations; where all
-    /// bodies are points, the moment is that of the mean mass at the length scale.
+    /// Part of the mean mass, and of its moment of inertia at the length scale, that a body has at least.
     const LEAST: f64 = 1e-6;
 
     pub(super) fn of(model: &Model<f64>) -> Self {
-        let mean = |of: &dyn Fn(&RigidBody<f64>) -> f64| {
-            let sum: f64 = model.bodies.iter().map(of).sum();
-            Self::LEAST * sum / model.bodies.len().max(1) as f64
-        };
-        let mass = mean(&|body| match body.role.is_angle() {
-            true => 0.0,
-            false => body.mass,
-        });
-        let inertia = match mean(&|body| body.inertia.trace() / 3.0) {
-            inertia if inertia > 0.0 => inertia,
-            _ => mass * reach(model) * reach(model),
-        };
-        Self { mass, inertia }
+        let mass: f64 = model.bodies.iter().map(|body| body.mass).sum();
+        let mean = mass / model.bodies.len().max(1) as f64;
+        let length = reach(model);
+        Self {
+            mass: Self::LEAST * mean,
+            inertia: Self::LEAST * mean * length * length,
+        }
     }
 
     /// Mass \[kg\] of a body, and the moment of inertia \[kg m²\] that it has in addition. The coordinate of a coupling is an
