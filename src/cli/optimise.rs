@@ -26,7 +26,7 @@ use std::sync::Mutex;
 use std::time::Instant;
 
 /// What one start finds. A variable that never moved, as all derivatives by it are zero, may be at a maximum.
-fn of_one_start_only(done: &driver::Optimisation) -> String {
+fn of_one_start_only(done: &Optimisation) -> String {
     let stays =
         |name: &&String| (done.optimum.design.get(*name)).is_some_and(|x| x.value == x.start);
     let zero = done.outcome.scaling.zero_columns.iter();

@@ -17,7 +17,7 @@ use std::f64::consts::TAU;
 /// The axes of a section are those turned by the tangent of its rotation θ, so a body that is welded to it is turned by
 /// θ³/3 too little.
 const OF_WELDS: f64 = 1.0 / 3.0;
-/// A torque on a section does work along tan of the angle by which it turns the axes, so it acts on θ with a part 1 / (1 + θ²).
+/// A torque on a section does work along the angle atan θ of its axes, so it acts on θ with a part 1 / (1 + θ²).
 const OF_TORQUES: f64 = 1.0;
 /// Of bodies from files only sections are known. A cantilever with a force at its end errs by 0.42 θ².
 const OF_FILES: f64 = 0.42;
@@ -161,13 +161,13 @@ type Section<'m> = (&'m Modes<f64>, f64);
 fn sections(model: &Model<f64>) -> Vec<Vec<Section<'_>>> {
     let mut all = vec![Vec::new(); model.flexible.len()];
     let mut welded = vec![false; model.bodies.len()];
-    let mut torqued = vec![false; model.bodies.len()];
+    let mut direct = vec![false; model.bodies.len()];
     for load in &model.loads {
         if let LoadKind::Torque { body, .. } = load.kind {
-            torqued[body] = true;
+            direct[body] = true;
         }
     }
-    let direct = torqued.clone();
+    let mut torqued = direct.clone();
     let welds = (model.joints.iter()).filter(|joint| joint.kind == JointKind::Weld);
     for joint in welds {
         let bodies = [Some(joint.body_a), joint.body_b].into_iter().flatten();

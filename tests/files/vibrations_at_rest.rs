@@ -652,7 +652,7 @@ fn frequencies_under_loads_that_follow_have_exact_derivatives() {
     }
 }
 
-/// Two links about oblique axes under such loads: derivatives are slopes, damped or not.
+/// Two links about oblique axes without such loads and under weak and strong ones: derivatives are slopes.
 #[test]
 fn frequencies_of_spatial_machines_under_loads_that_follow() {
     for part in [0.0, 1.0, 4.0] {

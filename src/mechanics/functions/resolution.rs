@@ -60,6 +60,12 @@ pub fn resolution(
 ) -> Resolution {
     let steps = run.grid.steps();
     let nodes: Vec<usize> = (0..=run.last()).filter(|&k| run.weights[k] > 0.0).collect();
+    // The nodes at the ends of steps.
+    let mut ends = vec![0];
+    ends.extend((1..=steps).scan(0, |at, k| {
+        *at += run.grid.step(k).nodes();
+        Some(*at)
+    }));
     let mut found = Resolution {
         error: 0.0,
         cells: vec![0; steps],
@@ -74,23 +80,15 @@ pub fn resolution(
             continue;
         };
         let share = goal / steps as f64;
-        let (mut at, mut total) = (0, 0.0);
-        let ends: Vec<usize> = std::iter::once(0)
-            .chain((1..=steps).scan(0, |at, k| {
-                *at += run.grid.step(k).nodes();
-                Some(*at)
-            }))
-            .collect();
+        let mut total = 0.0;
         for k in 1..=steps {
             let step = run.grid.step(k);
-            let next = ends[k];
-            let width = step.end - step.from;
+            let nodes = ends[k - 1]..ends[k] + 1;
             let beside = &ends[k.saturating_sub(2)..(k + 2).min(ends.len())];
-            let bound = sum.bound(at..next + 1, beside);
-            let (wanted, error) = sum.step(at..next + 1, (width, bound), step.cells, share);
+            let bound = sum.bound(nodes.clone(), beside);
+            let (wanted, error) = sum.step(nodes, (step.end - step.from, bound), step.cells, share);
             total += error;
             found.cells[k - 1] = found.cells[k - 1].max(wanted);
-            at = next;
         }
         found.error = found.error.max(total);
     }
@@ -124,14 +122,14 @@ impl Sum {
             let before = (i > 0).then(|| e[i] - e[i - 1]);
             let after = e.get(i + 2).map(|next| e[i + 1] - next);
             let rises = [before, after].into_iter().flatten().all(|x| x >= 0.0);
-            let margins = [before, after, Some((e[i + 1] - e[i]).abs())];
-            let margin = margins.into_iter().flatten().fold(0.0, f64::max);
+            let fall = (e[i + 1] - e[i]).abs();
+            let margin = [before, after].into_iter().flatten().fold(fall, f64::max);
             let top = e[i].max(e[i + 1]);
-            match margin > RESOLVED {
-                true if rises => Some(top + margin),
-                // A fall between two nodes, as from the end of a motion.
-                true if (e[i + 1] - e[i]).abs() > RESOLVED => Some(top),
-                _ => None,
+            if rises && margin > RESOLVED {
+                Some(top + margin)
+            } else {
+                // As from the end of a motion.
+                (fall > RESOLVED).then_some(top)
             }
         };
         let highest = (0..e.len().saturating_sub(1)).filter_map(beside);

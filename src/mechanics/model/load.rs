@@ -42,30 +42,6 @@ pub struct Load<S> {
     pub kind: LoadKind<S>,
 }
 
-impl<S> LoadKind<S> {
-    /// Whether at rest its forces surely are the derivatives of an energy of all positions. Others may have one in the
-    /// motions that joints allow, as a torque about a hinge.
-    pub fn has_potential(&self) -> bool {
-        match self {
-            Self::Force { axes, .. } => *axes == Axes::Ground,
-            Self::Spring { .. }
-            | Self::TorsionSpring { .. }
-            | Self::Damping { .. }
-            | Self::BallDamping { .. }
-            | Self::Friction { .. }
-            | Self::Drag { .. }
-            | Self::JointStop { .. }
-            | Self::DistanceStop { .. } => true,
-            Self::Torque { .. }
-            | Self::Bushing { .. }
-            | Self::Contact(_)
-            | Self::Cable(_)
-            | Self::Distributed(_)
-            | Self::Controller(_) => false,
-        }
-    }
-}
-
 /// The kinds of load.
 #[derive(Clone, Debug)]
 pub enum LoadKind<S> {
@@ -225,6 +201,30 @@ pub enum LoadKind<S> {
     Distributed(DistributedLoad<S>),
     /// A controller of a joint or a distance.
     Controller(Controller<S>),
+}
+
+impl<S> LoadKind<S> {
+    /// Whether at rest its forces surely are the derivatives of an energy of all positions. Others may have one in the
+    /// motions that joints allow, as a torque about a hinge.
+    pub fn has_potential(&self) -> bool {
+        match self {
+            Self::Force { axes, .. } => *axes == Axes::Ground,
+            Self::Spring { .. }
+            | Self::TorsionSpring { .. }
+            | Self::Damping { .. }
+            | Self::BallDamping { .. }
+            | Self::Friction { .. }
+            | Self::Drag { .. }
+            | Self::JointStop { .. }
+            | Self::DistanceStop { .. } => true,
+            Self::Torque { .. }
+            | Self::Bushing { .. }
+            | Self::Contact(_)
+            | Self::Cable(_)
+            | Self::Distributed(_)
+            | Self::Controller(_) => false,
+        }
+    }
 }
 
 /// A flat plate or wing in a flow.

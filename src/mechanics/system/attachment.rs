@@ -26,15 +26,15 @@ pub(super) fn parts<S: Scalar>() -> [Part<S>; 4] {
     ]
 }
 
-/// Σ x_I N_I and Σ x_I Θ_I; `x` gives the component of a carrier.
+/// Σ x_I N_I and Σ x_I Θ_I; `of` gives the component of a carrier.
 pub(super) fn sums<S: Scalar>(
     modes: &Modes<S>,
-    x: impl Fn(usize, usize) -> S,
+    of: impl Fn(usize, usize) -> S,
 ) -> (Vec3<S>, Vec3<S>) {
     let mut sums = (Vec3::zeros(), Vec3::zeros());
     let shapes = modes.displacement.iter().zip(&modes.rotation);
     for ((n, t), &(carrier, k)) in shapes.zip(&modes.places) {
-        let x = x(carrier, k);
+        let x = of(carrier, k);
         sums.0 += n * x;
         sums.1 += t * x;
     }

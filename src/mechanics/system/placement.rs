@@ -24,14 +24,17 @@ pub fn reach(model: &Model<f64>) -> f64 {
     let bodies = model.bodies.iter().enumerate();
     let bodies = bodies.filter(|(i, _)| !model.holds_angles(*i));
     let bodies = bodies.map(|(_, b)| b.position.norm());
+    let largest = joints.chain(bodies).fold(0.0, f64::max);
+    if largest > 0.0 {
+        return largest;
+    }
     let radii = (model.bodies.iter())
         .map(|b| (b.inertia.trace() / b.mass).sqrt())
         .filter(|radius| radius.is_finite());
-    let largest = joints.chain(bodies).fold(0.0, f64::max);
-    [largest, radii.fold(0.0, f64::max)]
-        .into_iter()
-        .find(|&length| length > 0.0)
-        .unwrap_or(1.0)
+    match radii.fold(0.0, f64::max) {
+        0.0 => 1.0,
+        radius => radius,
+    }
 }
 
 /// Length scale of a scene's gaps and motions \[m\]: its largest lever arm or coordinate of a

@@ -432,7 +432,7 @@ impl<'a, S: SolveScalar> Accelerations<'a, S> {
             };
             let a = side(0, moves(joint.body_a));
             let b = side(2, joint.body_b.is_some_and(moves));
-            let local = side(4, true);
+            let local = side(4, joint.modes.is_some());
             for i in self.numbering.rows(j) {
                 let row = &self.gradients[i];
                 out[i] = row.force.dot(&(a[0] - b[0]))

@@ -302,32 +302,27 @@ impl Solver<'_> {
     /// coordinates are displacements and angles, of nodes and of modes. They count by the mean square of what they move over
     /// the mass of the machine.
     pub(super) fn moved(&self, x: &State<f64>, change: &[f64]) -> f64 {
+        // NaN stays.
+        let larger = |a: f64, b: f64| if b > a || b.is_nan() { b } else { a };
         let layout = self.layout;
-        let y = layout.expanded(change[layout.groups()[0].clone()].to_vec());
-        let is_elastic = |i: usize| self.model.bodies[i].role == Role::Elastic;
-        let bodies = y.chunks_exact(6).enumerate();
-        let rigid = bodies.filter(|&(i, _)| !is_elastic(i));
-        let of_rigid = rigid.fold(0.0_f64, |size, (i, six)| {
-            // NaN stays.
-            let own = layout.moved_of(i, six, self.scale);
-            if own > size || own.is_nan() {
-                own
-            } else {
-                size
+        let mut y = layout.expanded(change[layout.groups()[0].clone()].to_vec());
+        let mut size = 0.0;
+        let all = self.model.bodies.iter().zip(y.chunks_exact_mut(6));
+        for (i, (body, six)) in all.enumerate() {
+            if body.role != Role::Elastic {
+                size = larger(size, layout.moved_of(i, six, self.scale));
+                six.fill(0.0);
             }
-        });
+        }
         if self.model.flexible.is_empty() {
-            return of_rigid;
+            return size;
         }
-        let mut elastic = y;
-        let of_bodies = elastic.chunks_exact_mut(6).enumerate();
-        for (_, six) in of_bodies.filter(|&(i, _)| !is_elastic(i)) {
-            six.fill(0.0);
-        }
-        let elastic = layout.compressed(elastic);
-        let motions = layout.at_rest(&x.q);
-        let square = dot(&self.metric_product(&motions, &elastic), &elastic);
-        of_rigid.max((square / self.mass).sqrt() / self.scale)
+        let elastic = layout.compressed(y);
+        let heavy = layout.mass_product(self.model, &layout.at_rest(&x.q), &elastic);
+        larger(
+            size,
+            (dot(&heavy, &elastic) / self.mass).sqrt() / self.scale,
+        )
     }
 
     /// M̃ y, both for unknowns of velocity.
