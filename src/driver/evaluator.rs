@@ -109,10 +109,10 @@ impl<'a> Evaluator<'a> {
         self.log.work()
     }
 
-    /// Adopts the steps and the event of the log.
-    fn follow(&mut self) {
+    /// Adopts the steps and the event of the log. A motion that failed may have left steps that the log does not know.
+    fn follow(&mut self, failed: bool) {
         let choice = self.log.choice();
-        if choice != self.choice {
+        if choice != self.choice || failed {
             self.choice = choice;
             if let Some(kept) = self.log.steps() {
                 self.integration.restore(kept);
@@ -312,7 +312,7 @@ impl Nlp for Evaluator<'_> {
             true => usize::from(problem.has_scene() && !problem.lowered_scene(&x).1),
             false => integration.unlowered - before,
         };
-        self.follow();
+        self.follow(found.is_err());
         let judged = JudgedOn {
             steps: self.integration.steps(),
             refreshes: self.integration.refreshes,
@@ -388,7 +388,7 @@ impl Nlp for Evaluator<'_> {
             }
             Ok(gradients)
         });
-        self.follow();
+        self.follow(found.is_err());
         if let Err(reason) = &found {
             self.without_gradients = Some(reason.clone());
         }

@@ -221,14 +221,17 @@ impl Integration {
         cases.list.iter().enumerate().map(one).collect()
     }
 
-    /// Adds the changes of cases to the counts of all.
+    /// Adds the changes of the models of cases.
     pub(super) fn count_cases(&mut self) {
-        let own = || self.cases.iter().flatten();
-        let (refreshes, unlowered) = (
-            own().map(|own| own.refreshes).sum(),
-            own().map(|own| own.unlowered).sum(),
-        );
-        (self.refreshes, self.unlowered) = (refreshes, unlowered);
+        self.unlowered = self.cases.iter().flatten().map(|own| own.unlowered).sum();
+    }
+
+    /// Whether a case has steps.
+    pub(super) fn has_cases_with_steps(&self) -> bool {
+        self.leaves()
+            .into_iter()
+            .flatten()
+            .any(|own| own.chosen.is_some())
     }
 
     /// The integrations of its cases, or of the phases of these, in their order.

@@ -106,6 +106,15 @@ fn a_run_of_cases_is_gone_on_with() {
     });
 }
 
+/// Each phase of a motion has its own steps.
+#[test]
+fn a_run_of_phases_is_gone_on_with() {
+    let latch = concat!(env!("CARGO_MANIFEST_DIR"), "/problems/latch.json");
+    goes_on_after_every_line(latch, 0, |record| {
+        assert!(record.contains("a step's error of"), "{record}");
+    });
+}
+
 /// A run that was killed before its first evaluation starts again, and its files are removed. A
 /// directory without a run is not changed.
 #[test]

@@ -500,3 +500,22 @@ fn a_weld_beside_the_joint_of_a_drive_that_was_on() {
         .collect();
     assert_eq!(unknown, ["R in falls"]);
 }
+
+/// A joint moves as it starts until an event puts on its drive.
+#[test]
+fn a_drive_that_comes_on_later_leaves_the_start_free() {
+    let file = json!({
+        "version": 1, "name": "late", "gravity": [0, 0, 0],
+        "bodies": {"cart": {"shape": {"box": {"size": [0.1, 0.1, 0.1]}}, "mass": 1}},
+        "joints": {"rail": {"prismatic": {
+            "between": ["cart", "ground"], "at": [0, 0, 0], "axis": [1, 0, 0], "start": {"slide": {"rate": 0.5}}
+        }}},
+        "drives": {"late": {"joint": "rail", "slide": {"rate": 0.2}}},
+        "events": {"starts": {"when": {"time": 0.5}, "on": ["late"]}},
+        "simulation": {"duration": 1},
+        "functions": {"x": {"final": {"position": {"body": "cart", "direction": [1, 0, 0]}}}}
+    });
+    let own = problem(&file);
+    let found = simulated(&own).value(number(&own, "x"));
+    assert!((found - 0.35).abs() < 1e-10, "{found}");
+}

@@ -687,10 +687,10 @@ fn frequencies_of_spatial_machines_under_loads_that_follow() {
     }
 }
 
-/// A beam on a soft spring has the same frequencies at every size.
+/// A beam on a soft spring has the same frequencies at every size and place.
 #[test]
-fn soft_machines_have_the_same_frequencies_at_every_size() {
-    let file = |l: f64| {
+fn soft_machines_have_the_same_frequencies_at_every_size_and_place() {
+    let file = |l: f64, at: f64| {
         json!({
             "version": 1, "name": "beam", "analysis": "rest", "gravity": [0, 0, 0],
             "bodies": {"beam": {
@@ -698,14 +698,14 @@ fn soft_machines_have_the_same_frequencies_at_every_size() {
                     "length": l, "section": {"rectangle": {"width": 0.02 * l, "height": 0.016 * l}},
                     "material": {"young": 1e9, "density": 1000}, "strain": "linear"
                 },
-                "place": {"put": "start", "at": [0, 0, 0]}
+                "place": {"put": "start", "at": [at, 0, 0]}
             }},
             "joints": {"hinge": hinge(["beam", "ground"], json!("beam.start"))},
             "loads": {"spring": {"torsion_spring": {"joint": "hinge", "stiffness": 3e-4 * l.powi(3)}}},
             "functions": {"f1": {"frequency": {"mode": 1}}, "f2": {"frequency": {"mode": 2}}}
         })
     };
-    let of_metre = values(&file(1.0));
+    let of_metre = values(&file(1.0, 0.0));
     let inertia = 1000.0 * 0.02 * 0.016 * (1.0 / 3.0 + 0.02 * 0.02 / 12.0);
     assert_near(
         &of_metre[..1],
@@ -713,7 +713,19 @@ fn soft_machines_have_the_same_frequencies_at_every_size() {
         1e-3,
     );
     for l in [1e3, 1e-2, 1e-4, 1e-5] {
-        let found: Vec<f64> = values(&file(l)).into_iter().map(|f| f * l).collect();
+        let found: Vec<f64> = values(&file(l, 0.0)).into_iter().map(|f| f * l).collect();
         assert_near(&found, &of_metre, 1e-6);
     }
+    let l = 1e-3;
+    let found: Vec<f64> = values(&file(l, 1e3)).into_iter().map(|f| f * l).collect();
+    assert_near(&found, &of_metre, 1e-6);
+    // With another one far away, whose spring is four times as stiff.
+    let [mut both, mut far] = [0.0, 1e3].map(|at| file(l, at));
+    both["bodies"]["far beam"] = far["bodies"]["beam"].take();
+    both["joints"]["far hinge"] = hinge(["far beam", "ground"], json!("far beam.start"));
+    both["loads"]["far spring"] = json!({
+        "torsion_spring": {"joint": "far hinge", "stiffness": 4.0 * 3e-4 * l.powi(3)}
+    });
+    let found: Vec<f64> = values(&both).into_iter().map(|f| f * l).collect();
+    assert_near(&found, &[of_metre[0], 2.0 * of_metre[0]], 1e-3);
 }

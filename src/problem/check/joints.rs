@@ -104,12 +104,12 @@ impl Checker<'_> {
                 continue;
             };
             let pointer = join(pointer, key);
-            let drive = self.document.drives.iter().find(|(_, drive)| {
+            let drive = self.document.drives.iter().find(|(drive_name, drive)| {
                 let driven = match dof {
                     DegreeOfFreedom::Rotation => drive.turn.is_some(),
                     DegreeOfFreedom::Translation => drive.slide.is_some(),
                 };
-                drive.joint == name && driven
+                drive.joint == name && driven && self.document.is_on(drive_name, 0)
             });
             if !joint.kind().degrees_of_freedom().contains(&dof) {
                 let found = format!("\"{key}\" of a joint that is {}", joint.kind().name());

@@ -20,7 +20,7 @@ use crate::model::Model;
 use crate::system::bodies::{self, velocities_of};
 use crate::system::failure::AssemblyFailure;
 use crate::system::numbering::Numbering;
-use crate::system::placement::reach;
+use crate::system::placement::extent;
 use crate::system::redundant_rows::RedundantRows;
 
 /// Vibrations beyond the wanted one, so that a cluster is seen as a whole.
@@ -95,12 +95,12 @@ fn spectrum(state: &InstantState<f64>, number: usize) -> Result<Spectrum, Assemb
     Ok(Spectrum::of_instant(clusters(&matrices, &values)?))
 }
 
-/// A rate \[1/s²\] of the motion: accelerations and squares of speeds by the length of the scene.
+/// A rate \[1/s²\] of the motion: accelerations and squares of speeds by the extent of the machine.
 fn rate(state: &InstantState<f64>) -> f64 {
     let InstantState {
         model, numbering, ..
     } = state;
-    let length = reach(model);
+    let length = extent(model);
     let bodies = (0..model.bodies.len()).filter(|&i| !model.is_carrier(i));
     let of_bodies = bodies.map(|i| {
         let o = numbering.velocity(i);

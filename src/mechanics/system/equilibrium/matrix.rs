@@ -14,7 +14,7 @@ use crate::system::in_motion::InMotion;
 use crate::system::joints;
 use crate::system::kkt::{emit_gradients, emit_reaction_jacobian, emit_transposed_gradients};
 use crate::system::loads::{self, LoadEntries};
-use crate::system::placement::reach;
+use crate::system::placement::extent;
 use crate::system::reduce::emit_reduced;
 
 /// Parts of rows and columns in velocity numbering: positions, accelerations, velocities.
@@ -85,13 +85,13 @@ pub(super) struct RigidMetric {
 }
 
 impl RigidMetric {
-    /// Part of the mean mass, and of its moment of inertia at the length scale, that a body has at least.
+    /// Part of the mean mass, and of its moment of inertia at the extent of the machine, that a body has at least.
     const LEAST: f64 = 1e-6;
 
     pub(super) fn of(model: &Model<f64>) -> Self {
         let mass: f64 = model.bodies.iter().map(|body| body.mass).sum();
         let mean = mass / model.bodies.len().max(1) as f64;
-        let length = reach(model);
+        let length = extent(model);
         Self {
             mass: Self::LEAST * mean,
             inertia: Self::LEAST * mean * length * length,

@@ -41,7 +41,8 @@ const SAME: f64 = 1e-9;
 /// σ is raised to that of the lowest mode if it is below this part of it.
 const SMALL_SHIFT: f64 = 1e-2;
 
-/// Steps that refine modes, and the largest change of one with yᵀ M y = 1.
+/// Steps that refine modes, and the largest change of one with yᵀ M y = 1. Where a larger one is left, the space lacks parts of
+/// the mode.
 const REFINEMENTS: usize = 2;
 const REFINED: f64 = 1e-6;
 
@@ -197,8 +198,8 @@ impl Softened<'_> {
 }
 
 impl Solver<'_> {
-    /// The lowest modes at a solution that are wanted, with its factors; `None` if loads have no potential. Free motions do
-    /// not count.
+    /// The lowest modes at a solution that are wanted, with its factors; `None` if loads have no potential, or σ hides modes.
+    /// Free motions do not count.
     ///
     /// # Errors
     /// Rest is not stable, or there are fewer modes.
@@ -254,7 +255,7 @@ impl Solver<'_> {
                 self.lower_shift(&mut softened, found, shift)?;
                 return Ok(None);
             };
-            self.refine(&mut softened, found, (&free, &mut modes));
+            let good = self.refine(&mut softened, found, (&free, &mut modes));
             modes.truncate(count);
             // Solutions have round-off along free motions, which a small σ magnifies.
             let lowest = modes.first().map_or(0.0, |own| own.square);
@@ -263,6 +264,11 @@ impl Solver<'_> {
                 let made = (softened.factors).make(self.layout, self.model, (found, shift));
                 made.map_err(|_| AssemblyFailure::Singular)?;
                 continue;
+            }
+            // σ M̃ hides modes of light bodies in large scenes. The search for damped ones is slower, and needs no M̃.
+            if good < modes.len() {
+                self.lower_shift(&mut softened, found, shift)?;
+                return Ok(None);
             }
             if all || wanted.suffice(&modes) {
                 break modes;
@@ -388,16 +394,18 @@ impl Solver<'_> {
 
     /// Refines modes by their residuals r = K y + Gᵀ μ − ω² M y. Lanczos and Ritz leave round-off of the extreme eigenvalues
     /// in all vectors. The error along another mode is y_jᵀ r / (ω_j² − ω²); the rest of it falls by (K + σ M̃)⁻¹ r.
-    /// What it adds along free motions is round-off, and a large change is no refinement.
+    /// What it adds along free motions is round-off, and a large change is no refinement. Returns how many of the first modes
+    /// need no larger change.
     fn refine(
         &self,
         softened: &mut Softened,
         found: &State<f64>,
         (free, modes): (&Basis, &mut [Mode]),
-    ) {
+    ) -> usize {
         let (layout, model) = (self.layout, self.model);
         let n = layout.numbering.unknowns();
         let along = layout.along(model, self.given, found);
+        let mut good = modes.len();
         for _ in 0..REFINEMENTS {
             let (mut heavy, mut rests) = (Vec::new(), Vec::new());
             for mode in &mut *modes {
@@ -409,7 +417,7 @@ impl Solver<'_> {
                 rests.push(rest);
             }
             let known = modes.to_vec();
-            for (mode, rest) in modes.iter_mut().zip(rests) {
+            for (k, (mode, rest)) in modes.iter_mut().zip(rests).enumerate() {
                 let mut change = rest.clone();
                 softened.factors.solve(&mut change);
                 for (other, heavy) in known.iter().zip(&heavy) {
@@ -425,6 +433,7 @@ impl Solver<'_> {
                 let moved = layout.mass_product(model, softened.motions, &change[..n]);
                 let size = dot(&moved, &change[..n]).max(0.0).sqrt();
                 if size.is_nan() || size > REFINED {
+                    good = good.min(k);
                     continue;
                 }
                 add_scaled(&mut mode.shape, -1.0, &change);
@@ -433,6 +442,7 @@ impl Solver<'_> {
                 mode.shape.iter_mut().for_each(|x| *x /= size);
             }
         }
+        good
     }
 }
 
