@@ -179,12 +179,12 @@ fn a_signal_to_one_rank_ends_all() {
 fn a_signal_to_one_rank_ends_motions_of_all() {
     let at = tempfile::tempdir().expect("a directory");
     let problem = two_plates(at.path(), [8, 2], 1000);
-    // So many steps that the run takes much longer than one evaluation and a signal. It ends by itself after six: a signal
-    // to the last rank in the midst of the sixth may come too late to change its end.
-    let steps = ["--set", "/simulation/steps=120"];
+    // So many steps that the run takes much longer than one evaluation, with its gradient, and a signal. It ends by itself after
+    // six: a signal to the last rank in the midst of the sixth may come too late to change its end.
+    let steps = ["--set", "/simulation/steps=240"];
     let arguments = [&problem, "--share-bodies", "--no-certificate"];
     let arguments = [&arguments[..], &steps].concat();
-    let wait = |output: &str| wait_for(output, &at.path().join(output), 2);
+    let wait = |output: &str| wait_for(output, &at.path().join(output), 3);
     a_signal_ends_all(at.path(), &arguments, wait);
 }
 
