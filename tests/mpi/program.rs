@@ -71,8 +71,11 @@ pub fn start(ranks: usize, at: &Path, arguments: &[&str]) -> Child {
     quiet.spawn().expect("the program runs")
 }
 
-/// Processes of `optimize-mpi` whose arguments name this directory.
-pub fn processes(output: &str) -> Vec<u32> {
+/// Processes of `optimize-mpi` that write into this directory. Another test may have one of the same name elsewhere.
+pub fn processes(directory: &Path) -> Vec<u32> {
+    let name = directory.file_name().expect("a name").as_encoded_bytes();
+    let at = directory.parent().expect("a directory").canonicalize();
+    let at = at.expect("is there");
     let entries = std::fs::read_dir("/proc").expect("Linux");
     let number = |name: &str| name.parse::<u32>().ok();
     let all = entries.flatten();
@@ -81,7 +84,10 @@ pub fn processes(output: &str) -> Vec<u32> {
         let line = std::fs::read(format!("/proc/{process}/cmdline")).unwrap_or_default();
         let words: Vec<&[u8]> = line.split(|byte| *byte == 0).collect();
         let program = words.first().copied().unwrap_or_default();
-        program.ends_with(b"optimize-mpi") && words.contains(&output.as_bytes())
+        let works_at = || std::fs::read_link(format!("/proc/{process}/cwd"));
+        program.ends_with(b"optimize-mpi")
+            && words.contains(&name)
+            && works_at().is_ok_and(|own| own == at)
     };
     all.filter(is_one).collect()
 }
@@ -94,12 +100,13 @@ pub fn end_of(run: &mut Child) -> (Option<i32>, Duration) {
 }
 
 /// Asserts that no rank of a run is left.
-pub fn no_orphans(output: &str) {
+pub fn no_orphans(directory: &Path) {
     let since = Instant::now();
-    while !processes(output).is_empty() {
+    while !processes(directory).is_empty() {
         assert!(
             since.elapsed() < Duration::from_secs(10),
-            "{output}: ranks are left"
+            "{}: ranks are left",
+            directory.display()
         );
         std::thread::sleep(Duration::from_millis(20));
     }
