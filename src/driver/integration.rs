@@ -52,7 +52,7 @@ pub struct Integration {
     summed: Vec<usize>,
     /// Settings in use, after the first simulation.
     chosen: Option<(Settings, String)>,
-    /// How often the steps were chosen anew.
+    /// How often the steps were chosen anew. Of cases together the log of evaluations counts it: see [`Self::restore`].
     pub refreshes: usize,
     /// Number of designs that do not fulfil the conditions of the lowering.
     pub unlowered: usize,
@@ -224,14 +224,6 @@ impl Integration {
     /// Adds the changes of the models of cases.
     pub(super) fn count_cases(&mut self) {
         self.unlowered = self.cases.iter().flatten().map(|own| own.unlowered).sum();
-    }
-
-    /// Whether a case has steps.
-    pub(super) fn has_cases_with_steps(&self) -> bool {
-        self.leaves()
-            .into_iter()
-            .flatten()
-            .any(|own| own.chosen.is_some())
     }
 
     /// The integrations of its cases, or of the phases of these, in their order.

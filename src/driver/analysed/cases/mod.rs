@@ -185,11 +185,8 @@ impl InCases<Analysed> {
         let idle = (ranks.as_ref()).is_some_and(|_| spread::must_end(integration, problem));
         let is_own = |c: usize| !idle && ranks.as_ref().is_none_or(|ranks| ranks.owns(c));
         let chosen = spread::chosen(integration);
-        let had_steps = integration.has_cases_with_steps();
         if cases.division == Division::Events {
-            let found = Self::in_phases(integration, (problem, cases), x, &wanted)?;
-            integration.refreshes += usize::from(had_steps && found.1.is_some());
-            return Ok(found);
+            return Self::in_phases(integration, (problem, cases), x, &wanted);
         }
         let all = integration.cases.par_iter_mut().zip(&cases.list);
         let found = all
@@ -214,7 +211,6 @@ impl InCases<Analysed> {
         let found: Vec<AnalysedOnce> = found.into_iter().collect::<Result<_, _>>()?;
         let spread = ranks.map(|ranks| Spread::new(ranks, wanted));
         let (found, refresh) = Self::told(integration, (problem, cases), x, found);
-        integration.refreshes += usize::from(had_steps && refresh.is_some());
         Ok((Self { spread, ..found }, refresh))
     }
 
