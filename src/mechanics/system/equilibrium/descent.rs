@@ -16,7 +16,7 @@
 
 use super::equations::State;
 use super::matrix::{Factors, RigidMetric};
-use super::rest::FLOOR;
+use super::rest::{FLOOR, FREE, remove};
 use super::{CLOSE, LARGEST, STAGNANT, Solver};
 use crate::math::slices::dot;
 use crate::system::failure::AssemblyFailure;
@@ -49,6 +49,9 @@ const LEAST_RATE: f64 = 1e-2;
 const PLACED: f64 = 1e-6;
 const LEFT_BY: f64 = 0.02;
 const LEAVES: usize = 20;
+
+/// A last step of this part of the way, or less, is the end.
+const SETTLED: f64 = 1e-10;
 
 /// A step before it is cut.
 struct Step {
@@ -121,6 +124,10 @@ impl Solver<'_> {
                     false => None,
                 };
                 let Some(along) = growing else {
+                    let end = match step.size > SETTLED * away {
+                        true => self.settled(&mut factors, end, away)?,
+                        false => end,
+                    };
                     self.same_when_turned(&end)?;
                     self.known.keep(&self.numbers, &end);
                     return Ok(end);
@@ -146,6 +153,45 @@ impl Solver<'_> {
         self.factorise_at(&mut factors, &x)?;
         self.not_held(&mut factors, &x)?;
         Err(none(ITERATIONS))
+    }
+
+    /// The end of a descent whose last steps σ may have made short: under loads that are small beside the stiffness of the
+    /// machine they are as short as round-off. With the least σ and without free motions Newton's method goes on.
+    fn settled(
+        &self,
+        factors: &mut Factors,
+        end: State<f64>,
+        mut away: f64,
+    ) -> Result<State<f64>, AssemblyFailure> {
+        let layout = self.layout;
+        self.factorise_at(factors, &end)?;
+        let free = self.free_motions(factors, &end)?;
+        let (mut x, mut shift) = (end, FLOOR);
+        let mut before = f64::INFINITY;
+        for _ in 0..ITERATIONS {
+            let residual = layout.residual(self.model, self.given, &x);
+            let mut change = self.step(factors, &residual, &x).change;
+            let y = layout.groups()[0].clone();
+            free.iter().for_each(|own| remove(own, &mut change[y.clone()]));
+            let size = self.moved(&x, &change);
+            let slowly = size > SLOW * before;
+            if size.is_nan() || size > LEFT_BY || slowly && shift <= FREE {
+                break;
+            }
+            layout.advance(&mut x, &change);
+            turns::count(self.model, layout.numbering, &mut x.q);
+            away += size;
+            if size <= SETTLED * away {
+                break;
+            }
+            if slowly {
+                shift *= FALL;
+                let made = factors.make(layout, self.model, (&x, shift * x.rate));
+                made.map_err(|_| AssemblyFailure::Singular)?;
+            }
+            before = size;
+        }
+        Ok(x)
     }
 
     /// The placement with reactions and its rate, the first σ: the largest acceleration by length of the scene.

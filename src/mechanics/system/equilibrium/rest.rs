@@ -359,7 +359,7 @@ impl Solver<'_> {
 }
 
 /// Removes the part of a vector along a free motion.
-fn remove([y, with_metric]: &FreeMotion, from: &mut [f64]) {
+pub(super) fn remove([y, with_metric]: &FreeMotion, from: &mut [f64]) {
     let along = dot(with_metric, from);
     add_scaled(from, -along, y);
 }
