@@ -151,3 +151,25 @@ fn all_ranks_end_together() {
     }
     assert!((end_at..end_at + 200).contains(&calls), "{calls}");
 }
+
+/// Each rank keeps its share of the steps for the adjoint, besides the start of the motion.
+#[test]
+fn the_tape_is_spread() {
+    let steps = 8;
+    let file = plates([16, 4], 0.02, steps, &json!({"bdf": {"order": 2}}));
+    let bytes = |own: &Problem| {
+        let at = Evaluated::new(own, &own.start()).expect("a motion");
+        at.run.bytes()[1]
+    };
+    let alone = bytes(&problem(&file));
+    let of_ranks = |ranks| over((ranks, usize::MAX), &file, bytes).0;
+    // Two ranks have the start twice.
+    let start = of_ranks(2).iter().sum::<usize>() - alone;
+    assert!(0 < start && start < alone / steps, "{start} {alone}");
+    for ranks in 2..=4 {
+        let all = of_ranks(ranks);
+        assert_eq!(all.iter().sum::<usize>(), alone + (ranks - 1) * start);
+        let most = start + (alone - start) / ranks + 8 * 2 * steps;
+        assert!(all.iter().all(|&own| own <= most), "{all:?} {alone}");
+    }
+}

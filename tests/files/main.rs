@@ -61,6 +61,7 @@ mod report_records;
 mod second_order;
 mod shell_hinges;
 mod shell_pictures;
+mod small_loads;
 mod smoothed;
 mod stability;
 mod states_of_controllers;

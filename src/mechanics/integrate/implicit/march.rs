@@ -144,7 +144,7 @@ fn march_until<S: SolveScalar>(
     }
     let mut past = Past::new(numbering, first.clone(), (method, scheme.stages()));
     let mut inside = Stage::zero(numbering);
-    let block = Block::new(numbering, first, scheme.stages());
+    let block = Block::new((numbering, &flexible::team(model)), first, scheme.stages());
     let memory = (settings.memory, block.room(method));
     let tape = trajectory::Tape::Implicit(Tape::new(block, memory, controller.steps()));
     let lambda = start.lambda.clone();

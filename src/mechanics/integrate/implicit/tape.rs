@@ -8,7 +8,7 @@ use crate::integrate::replay;
 use crate::integrate::rows::Rows;
 use crate::integrate::schedule::MemoryOfBlock;
 use crate::integrate::settings::Method;
-use crate::math::{Complex64, Scalar};
+use crate::math::{Complex64, Scalar, Team};
 use crate::system::Numbering;
 use std::ops::Range;
 
@@ -29,14 +29,15 @@ pub struct Block<S> {
 }
 
 impl<S: Scalar> Block<S> {
-    /// An empty block of a run that starts with `start`. A step has at most `most` stages.
-    pub fn new(numbering: &Numbering, start: Stage<S>, most: usize) -> Self {
+    /// An empty block of a run that starts with `start`, whose stages are spread over the ranks of a team. A step has at most
+    /// `most` stages.
+    pub fn new((numbering, team): (&Numbering, &Team), start: Stage<S>, most: usize) -> Self {
         let (nq, nv) = (numbering.positions(), numbering.velocities());
         let nc = numbering.constraints();
         Self {
             first: 0,
             start,
-            stages: Rows::new([nq, nv, nq, nv, nc, nc, nq, nv, 1]),
+            stages: Rows::over(team, [nq, nv, nq, nv, nc, nc, nq, nv, 1]),
             ends: Vec::new(),
             most,
         }
@@ -54,7 +55,7 @@ impl<S: Scalar> Block<S> {
         // formula, and the stage of the factors.
         let states = (2 + self.most) * width + recent(method) * (nq + nv + 2 * nc);
         MemoryOfBlock {
-            step: (stages * width + 1) * number,
+            step: (stages * self.stages.most_kept() + 1) * number,
             checkpoint: (states + memory_size(method) * (nq + nv) + 32) * number,
         }
     }
@@ -81,7 +82,7 @@ impl<S: Scalar> Block<S> {
         let at = k - self.first - 1;
         let all = self.before(at)..self.ends[at];
         for (stage, i) in out.iter_mut().zip(all.clone()) {
-            stage.set_parts(self.stages.get(i));
+            stage.set_parts(self.stages.vectors(&self.stages.record(i)));
         }
         all.len()
     }
@@ -91,7 +92,7 @@ impl<S: Scalar> Block<S> {
     pub fn read_end(&self, k: usize, out: &mut Stage<S>) {
         match self.before(k - self.first) {
             0 => out.set(&self.start),
-            end => out.set_parts(self.stages.get(end - 1)),
+            end => out.set_parts(self.stages.vectors(&self.stages.record(end - 1))),
         }
     }
 }
@@ -126,7 +127,7 @@ impl<S: Scalar> replay::Block for Block<S> {
         Self {
             first: 0,
             start: self.start.clone(),
-            stages: Rows::new(self.stages.lengths()),
+            stages: Rows::over(self.stages.team(), self.stages.lengths()),
             ends: Vec::new(),
             most: self.most,
         }

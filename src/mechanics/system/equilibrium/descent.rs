@@ -16,7 +16,8 @@
 
 use super::equations::State;
 use super::matrix::{Factors, RigidMetric};
-use super::rest::{FLOOR, FREE, remove};
+use super::pencil::{At, Matrices};
+use super::rest::{FLOOR, FREE, ROUND_OFF, remove};
 use super::{CLOSE, LARGEST, STAGNANT, Solver};
 use crate::math::slices::dot;
 use crate::system::failure::AssemblyFailure;
@@ -156,7 +157,8 @@ impl Solver<'_> {
     }
 
     /// The end of a descent whose last steps σ may have made short: under loads that are small beside the stiffness of the
-    /// machine they are as short as round-off. With the least σ and without free motions Newton's method goes on.
+    /// machine they are as short as round-off. Newton's method goes on with a smaller σ, but not along free motions, nor where
+    /// the stiffness is round-off.
     fn settled(
         &self,
         factors: &mut Factors,
@@ -164,21 +166,25 @@ impl Solver<'_> {
         mut away: f64,
     ) -> Result<State<f64>, AssemblyFailure> {
         let layout = self.layout;
+        let y = layout.groups()[0].clone();
         self.factorise_at(factors, &end)?;
         let free = self.free_motions(factors, &end)?;
-        let (mut x, mut shift) = (end, FLOOR);
-        let mut before = f64::INFINITY;
+        let stiffest = Matrices::new(At::rest(layout, self.model, &end, None), false).stiffest();
+        let (mut x, mut shift, mut before) = (end, FLOOR, f64::INFINITY);
         for _ in 0..ITERATIONS {
             let residual = layout.residual(self.model, self.given, &x);
-            let mut change = self.step(factors, &residual, &x).change;
-            let y = layout.groups()[0].clone();
-            free.iter().for_each(|own| remove(own, &mut change[y.clone()]));
-            let size = self.moved(&x, &change);
+            let mut step = self.step(factors, &residual, &x);
+            let stiffness = step.curvature / step.square - shift * x.rate;
+            for own in &free {
+                remove(own, &mut step.change[y.clone()]);
+            }
+            let size = self.moved(&x, &step.change);
             let slowly = size > SLOW * before;
-            if size.is_nan() || size > LEFT_BY || slowly && shift <= FREE {
+            let resolved = stiffness > ROUND_OFF * stiffest && size <= LEFT_BY;
+            if !resolved || slowly && shift <= FREE {
                 break;
             }
-            layout.advance(&mut x, &change);
+            layout.advance(&mut x, &step.change);
             turns::count(self.model, layout.numbering, &mut x.q);
             away += size;
             if size <= SETTLED * away {

@@ -292,6 +292,13 @@ impl Matrices {
         self.pattern.order()
     }
 
+    /// The largest k_ii / m_ii \[1/s²\].
+    pub(super) fn stiffest(&self) -> f64 {
+        let [stiff, heavy] = [&self.stiffness, &self.mass].map(diagonal);
+        let rates = stiff.iter().zip(&heavy).map(|(k, m)| k / m);
+        rates.filter(|rate| rate.is_finite()).fold(0.0, f64::max)
+    }
+
     /// Removes the motions that are left out from y.
     pub(super) fn leave_out<S: Scalar>(&self, y: &mut [S]) {
         for [motion, heavy] in &self.left_out {
@@ -323,7 +330,7 @@ impl Matrices {
 }
 
 /// The entries a_ii.
-pub(super) fn diagonal(matrix: &SparseMatrix<f64>) -> Vec<f64> {
+fn diagonal(matrix: &SparseMatrix<f64>) -> Vec<f64> {
     let (starts, rows) = (matrix.pattern.column_starts(), matrix.pattern.rows());
     let one = |j: usize| {
         let place = (starts[j]..starts[j + 1]).find(|&k| rows[k] == j);

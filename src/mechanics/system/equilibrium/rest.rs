@@ -8,7 +8,7 @@
 
 use super::equations::State;
 use super::matrix::{Factors, RigidMetric};
-use super::pencil::{At, Matrices, diagonal};
+use super::pencil::{At, Matrices};
 use super::released::Released;
 use super::ritz::ritz_vectors;
 use super::{KnownStarts, Solver, Sought, at_solution};
@@ -34,7 +34,7 @@ const INVERSE: usize = 4;
 /// Largest part of the right side that the derivative of a solution leaves.
 const UNSOLVED: f64 = 1e-6;
 /// Round-off of forces, relative to the mass of the machine times its rate and its size.
-const ROUND_OFF: f64 = 64.0 * f64::EPSILON;
+pub(super) const ROUND_OFF: f64 = 64.0 * f64::EPSILON;
 
 /// A free motion of unit length in the metric, and its product with that.
 pub(super) type FreeMotion = [Vec<f64>; 2];
@@ -240,11 +240,7 @@ impl Solver<'_> {
         (placed, loaded): (&State<f64>, f64),
     ) -> Result<Option<f64>, AssemblyFailure> {
         let matrices = Matrices::new(At::rest(self.layout, self.model, placed, None), false);
-        let [stiff, heavy] = [&matrices.stiffness, &matrices.mass].map(diagonal);
-        let stiffest = (stiff.iter().zip(&heavy))
-            .map(|(k, m)| k / m)
-            .filter(|rate| rate.is_finite())
-            .fold(0.0, f64::max);
+        let stiffest = matrices.stiffest();
         if loaded > NOISE * stiffest {
             return Ok(None);
         }
