@@ -125,7 +125,9 @@ impl Solver<'_> {
                     false => None,
                 };
                 let Some(along) = growing else {
-                    let end = match step.size > SETTLED * away {
+                    // Rotation is a load of every machine that turns, and not a small one.
+                    let is_short = step.size > SETTLED * away && layout.turning.is_none();
+                    let end = match is_short {
                         true => self.settled(&mut factors, end, away)?,
                         false => end,
                     };
