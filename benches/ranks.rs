@@ -1,4 +1,5 @@
-//! One iteration of flexible scenes, two values and gradients, by 1, 2 and 4 ranks that compute every motion together, beside threads.
+//! One iteration of flexible scenes, two values and gradients, by 1, 2 and 4 ranks that compute every motion together, beside
+//! threads.
 //!
 //! `cargo bench --features mpi --bench ranks` prints wall times of simulation and gradient, of two runs the faster, and
 //! checks that all optima are the same to the byte. It needs `mpirun`.

@@ -7,6 +7,11 @@ from typing import Any
 
 PROBLEMS = Path(__file__).parents[2] / "problems"
 
+# The range of the best trebuchet [m], and how far SLSQP is to be from a stationary value [m]. Rounding is 1e-12 of 850 m, at which
+# its line search fails.
+OPTIMUM = 849.8985
+FTOL = 1e-7
+
 PENDULUM: dict[str, Any] = {
     "version": 1,
     "name": "pendulum",

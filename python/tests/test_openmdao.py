@@ -13,16 +13,11 @@ import numpy as np
 import pytest
 
 import flexbody
-from scenes import PROBLEMS
-from scenes import PENDULUM
+from scenes import FTOL, OPTIMUM, PENDULUM, PROBLEMS
 
 om = pytest.importorskip("openmdao.api")
 
 from flexbody.openmdao import FlexbodyComp, FlexbodyDriver, unit  # noqa: E402
-
-OPTIMUM = 849.8985
-# SLSQP takes it as metres of 850: rounding is 1e-12 of them, at which its line search fails.
-FTOL = 1e-7
 
 
 @pytest.fixture(autouse=True)

@@ -12,9 +12,7 @@ import numpy as np
 import pytest
 
 import flexbody
-from scenes import PROBLEMS
-
-OPTIMUM = 849.8985
+from scenes import OPTIMUM, PROBLEMS
 
 
 @pytest.fixture(scope="module")

@@ -11,8 +11,7 @@ import numpy as np
 import pytest
 
 import flexbody
-
-OPTIMUM = 849.8985
+from scenes import OPTIMUM
 
 
 def test_the_trebuchet_throws_as_far_as_by_the_command(

@@ -8,12 +8,8 @@ import numpy as np
 import pytest
 
 import flexbody
-from scenes import PROBLEMS
+from scenes import FTOL, OPTIMUM, PROBLEMS
 from flexbody.scipy import Scaled, scipy_problem
-
-OPTIMUM = 849.8985
-# SLSQP takes it as metres of 850: rounding is 1e-12 of them, at which its line search fails.
-FTOL = 1e-7
 
 
 @pytest.fixture(scope="module")

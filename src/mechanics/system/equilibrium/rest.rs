@@ -33,7 +33,8 @@ const MOVES: f64 = 0.05;
 const INVERSE: usize = 4;
 /// Largest part of the right side that the derivative of a solution leaves.
 const UNSOLVED: f64 = 1e-6;
-/// Round-off of forces, relative to the mass of the machine times its rate and its size.
+/// Round-off of forces, relative to the mass of the machine times its rate and its size, and of the stiffness along one motion,
+/// relative to the stiffest.
 pub(super) const ROUND_OFF: f64 = 64.0 * f64::EPSILON;
 
 /// A free motion of unit length in the metric, and its product with that.
