@@ -127,8 +127,10 @@ def minimise(
     - `callback`: after every iteration `callback(x)`, or `callback(intermediate_result=…)` with an `OptimizeResult` if
       that is the name of its only parameter. The run stops if it returns a true value or raises `StopIteration`.
     - `options`: `tolerance`, `constraint_tolerance`, `max_iterations` (or `maxiter`), `max_evaluations` (or `maxfev`),
-      `max_seconds`, `unbounded_below`, `scale_variables`, `memory`, `dense_limit`; `finite_diff_rel_step`, the relative
-      step of differences; `disp`: print the verdict.
+      `max_seconds`, `unbounded_below`, `memory`, `dense_limit`; `scale_variables` (default True): variables with two
+      bounds are divided by their distance, so that a variable of 1e-6 counts as much as one of 1e6, and bounds far
+      beyond all values are better left out; `finite_diff_rel_step`, the relative step of differences; `disp`: print
+      the verdict.
 
     Where a function has no value it raises an `ArithmeticError` (such as `FloatingPointError`) or a `SimulationError`,
     or it returns NaN: the optimiser then takes shorter steps. Any other exception ends the run and is raised here. A
@@ -136,7 +138,7 @@ def minimise(
     """
     start = _start(x0)
     lower, upper = _bounds(bounds, start.size)
-    settings = checked_options(options, method, tol)
+    settings = {"scale_variables": True, **checked_options(options, method, tol)}
     relative_step = settings.pop("finite_diff_rel_step", None)
     shown = bool(settings.pop("disp", False))
     for name, given in (("hess", hess), ("hessp", hessp)):

@@ -335,7 +335,7 @@ class FlexbodyDriver(Driver):  # type: ignore[misc,unused-ignore]
         declare("max_evaluations", None, desc="largest number of runs of the model")
         declare("max_seconds", None, desc="longest time of a run [s]")
         declare("unbounded_below", None, desc="how far the objective falls before the problem counts as unbounded")
-        declare("scale_variables", None, desc="whether variables are scaled by their sizes")
+        declare("scale_variables", None, desc="whether variables with two bounds are divided by their distance")
         declare("disp", False, types=bool, desc="whether to print the verdict")
 
     def _get_name(self) -> str:

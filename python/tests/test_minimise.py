@@ -120,6 +120,24 @@ def test_sparse_jacobians(form: str) -> None:
     assert minimise(**chain(n), constraints=[linear, end]).x == pytest.approx(found.x, abs=1e-5)
 
 
+@pytest.mark.parametrize("method", ["interior_point", "trust_region", "auto"])
+@pytest.mark.parametrize("scale", [1.0, 1e3, 1e4, 1e6])
+def test_bounds_tell_the_sizes_of_variables(method: str, scale: float) -> None:
+    sizes = np.array([1 / scale, scale])
+
+    def value(x: Any) -> float:
+        z = x / sizes
+        return float(z[0] - 3 * z[1] + 0.1 * z @ z)
+
+    def slope(x: Any) -> Any:
+        return (np.array([1.0, -3.0]) + 0.2 * x / sizes) / sizes
+
+    bounds = [(-size, 0.5 * size) for size in sizes]
+    found = minimise(value, [0.0, 0.0], jac=slope, bounds=bounds, method=method)
+    assert found.success, found.verdict
+    assert found.x / sizes == pytest.approx([-1, 0.5], abs=1e-6)
+
+
 def test_verdict_of_contradicting_constraints_names_one() -> None:
     found = minimise(
         lambda x: x[0],

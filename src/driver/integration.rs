@@ -2,6 +2,7 @@
 //! tolerance are kept until their error is too large, so functions are smooth in the design.
 
 mod tangent;
+mod unresolved_sums;
 
 use super::event::{self, Admit};
 pub use super::event_times::Events;

@@ -362,7 +362,7 @@ pub fn head(problem: &Problem) -> Head {
     let document = problem.document.as_object().cloned().unwrap_or_default();
     let is_setting = |(key, _): &(String, Value)| SETTINGS.contains(&key.as_str());
     let (settings, stated): (Map<_, _>, Map<_, _>) = document.into_iter().partition(is_setting);
-    let hash = Sha256::digest(Value::Object(stated).to_string());
+    let hash = Sha256::digest(Value::Object(stated).to_string() + &problem.files);
     Head {
         sha256: hash.iter().map(|byte| format!("{byte:02x}")).collect(),
         start: problem.start(),

@@ -74,8 +74,10 @@ pub fn simulate_with(
     let unlowered = integration.unlowered > before;
     let of_method = integration.warning(&at.scene, &at.run);
     let reason = integration.chosen().map_or("", |(_, reason)| reason).into();
+    let of_sums = integration.unresolved_sums(problem, (&at.scene, &at.run));
     let own = Simulation::of(problem, at);
-    let all: Vec<String> = of_method.into_iter().chain(own.lost_energy()).collect();
+    let warnings = of_method.into_iter().chain(of_sums);
+    let all: Vec<String> = warnings.chain(own.lost_energy()).collect();
     Ok(Simulation {
         reason,
         warning: (!all.is_empty()).then(|| all.join("; ")),

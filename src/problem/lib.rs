@@ -232,6 +232,8 @@ pub struct Problem {
     pub document: serde_json::Value,
     /// SHA-256 of the document without white space and of the files that it names, hexadecimal.
     pub hash: String,
+    /// SHA-256 of each of these files, hexadecimal, in the order in which they are read.
+    pub files: String,
     /// The document with its numbers bound to the design variables.
     written: Document,
     /// Order in which the bodies are placed.

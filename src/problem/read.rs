@@ -388,11 +388,16 @@ pub(super) fn lowering(problem: &Problem) -> Lowering {
             scale: variable.scale,
         })
         .collect();
-    let real = |x: &[f64]| problem.unlowered_scene(x);
-    let dual = |x: &[Dual]| problem.unlowered_scene(x);
+    // Equilibrium is sought at the start alone: what is in a plane as placed, with all of its loads, stays there, and where it
+    // buckles out of it the scene of that design is not reduced.
+    let placed = problem.without_equilibrium();
+    let placed = placed.as_ref().unwrap_or(problem);
+    let start = problem.unlowered_scene::<f64>(&problem.start());
+    let real = |x: &[f64]| placed.unlowered_scene(x);
+    let dual = |x: &[Dual]| placed.unlowered_scene(x);
     match problem.is_phase() {
-        true => Lowering::of_plane(&real, &dual, &variables),
-        false => Lowering::find(&real, &dual, &variables),
+        true => Lowering::of_plane(start, (&real, &dual), &variables),
+        false => Lowering::find(start, (&real, &dual), &variables),
     }
 }
 
@@ -486,6 +491,7 @@ fn problem(
             },
         ),
         hash,
+        files: content.to_owned(),
         document,
         written,
         order,

@@ -296,3 +296,24 @@ fn a_run_that_has_ended_is_resumed_without_a_simulation() {
     let record = optimum(&at.path().join("out"));
     assert!(record["counts"]["steps"].as_u64() > Some(1000), "{record}");
 }
+
+/// A file that the problem names is a part of it: with other data the evaluations are those of another problem.
+#[test]
+fn a_run_is_not_resumed_with_other_data() {
+    let at = scratch();
+    let root = concat!(env!("CARGO_MANIFEST_DIR"), "/problems/");
+    for name in ["fit_pendulum.json", "fit_pendulum.csv"] {
+        std::fs::copy(format!("{root}{name}"), at.path().join(name)).expect("is copied");
+    }
+    let limit = ["--set", "/optimiser={\"evaluations\":3}"];
+    let problem = "fit_pendulum.json";
+    let first = [&[problem, "--output", "out"], &limit[..]].concat();
+    expect(1, at.path(), &first);
+    let data = read(&at.path().join("fit_pendulum.csv"));
+    std::fs::write(at.path().join("fit_pendulum.csv"), format!("{data}\n")).expect("is written");
+    let ran = expect(2, at.path(), &[problem, "--resume", "out"]);
+    let told = "the evaluations of another problem or start";
+    assert!(ran.err.contains(told), "{}", ran.err);
+    std::fs::write(at.path().join("fit_pendulum.csv"), data).expect("is written");
+    expect(0, at.path(), &[problem, "--resume", "out"]);
+}

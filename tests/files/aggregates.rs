@@ -1,5 +1,6 @@
 //! Aggregates choose ρ where a file leaves it out: near what they stand for, or near a limit, in any unit.
 
+use crate::reference::documents::run;
 use flexbody_driver::aggregates::{self, Unread};
 use flexbody_driver::{Simulated, check};
 use flexbody_problem::{Override, Problem};
@@ -269,4 +270,29 @@ fn sharp_aggregates_see_every_peak() {
         let slope = check(&problem, &x).expect("derivatives")[0].adjoint;
         assert!((slope - mean).abs() < 1e-3, "{slope} {mean}");
     }
+}
+
+/// ∫ v² / x over a motion through x = 0 has no value, and no samples find it. Beyond the pole it is ln 2.
+#[test]
+fn an_integral_across_a_pole_is_told() {
+    let quotient = json!({"quotient": [
+        {"speed_squared": {"body": "b"}},
+        {"position": {"body": "b", "direction": [1, 0, 0]}}
+    ]});
+    let mut file = json!({
+        "version": 1, "name": "pole", "gravity": [0, 0, 0],
+        "bodies": {"b": {
+            "mass": 1, "inertia": {"xx": 1, "yy": 1, "zz": 1},
+            "place": {"at": [-1, 0, 0]}, "velocity": {"linear": [1, 0, 0]}}},
+        "simulation": {"duration": 3},
+        "functions": {"across": {"integral": quotient.clone()}}
+    });
+    let warning = run(&file).warning.expect("a warning");
+    assert!(warning.contains("\"across\" by"), "{warning}");
+    file["bodies"]["b"]["place"]["at"] = json!([1, 0, 0]);
+    file["simulation"]["duration"] = json!(1);
+    let beyond = run(&file);
+    assert!(beyond.warning.is_none(), "{:?}", beyond.warning);
+    let value = beyond.at.function(0).value;
+    assert!((value - 2.0_f64.ln()).abs() < 1e-10, "{value}");
 }

@@ -132,3 +132,63 @@ fn elastic_rotors_are_the_same_about_oblique_axes() {
         assert_near(&found, first.get_or_insert_with(|| found.clone()), 1e-9);
     }
 }
+
+/// A heavy disc at the end of a shaft that weighs next to nothing, whose own vibrations are a million times faster: the speeds of
+/// the shaft itself grow as it becomes lighter, and the first one stays.
+#[test]
+fn a_light_shaft_does_not_hide_what_it_carries() {
+    let (length, stiffness, mass, along, across) = (0.5_f64, 4000.0, 10.0, 0.2, 0.1);
+    let [force, both, moment] = [12.0, -6.0, 4.0].map(|x| x * stiffness);
+    let [a, b, c] = [
+        force / length.powi(3),
+        both / length.powi(2),
+        moment / length,
+    ];
+    // (a − m s) (c − (I_t − I_p) s) = b², s = Ω²
+    let half = 0.5 * (a * (across - along) + c * mass);
+    let by_square = mass * (across - along);
+    let squared = (half - (half * half - by_square * (a * c - b * b)).sqrt()) / by_square;
+    let expected = squared.sqrt();
+    let mut file = json!({
+        "version": 1, "name": "rotor", "analysis": "modes", "gravity": [0, 0, 0],
+        "bodies": {
+            "shaft": {"beam": {"length": length, "section": {"given": {
+                "ea": 1e9, "ei_y": stiffness, "ei_z": stiffness, "gj": 4000}},
+                "modes": {"bending_y": 3, "bending_z": 3, "torsion": 1}},
+                "place": {"put": "start"}},
+            "disc": {"mass": mass, "inertia": {"xx": along, "yy": across, "zz": across},
+                "place": {"at": "shaft.end"}}
+        },
+        "joints": {
+            "bearing": {"revolute": {"between": ["shaft", "ground"], "at": "shaft.start", "axis": [1, 0, 0]}},
+            "seat": {"weld": {"between": ["disc", "shaft"], "at": "shaft.end"}}
+        },
+        "drives": {"motor": {"joint": "bearing", "turn": {"rate": 10}}},
+        "turning": {"axis": [1, 0, 0], "speed": 60},
+        "functions": {
+            "first": {"critical_speed": {"number": 1}},
+            "second": {"critical_speed": {"number": 2}}
+        }
+    });
+    let mut of_shaft = None;
+    for light in [1e-3, 1e-4, 1e-5] {
+        let section = &mut file["bodies"]["shaft"]["beam"]["section"]["given"];
+        section["mass_per_length"] = json!(light);
+        section["inertia_y"] = json!(1e-4 * light);
+        section["inertia_z"] = json!(1e-4 * light);
+        let [first, second] = values(&file)[..] else {
+            panic!("two speeds");
+        };
+        let off = first / expected - 1.0;
+        assert!(off.abs() < 0.1 * light, "{light}: {first} {expected}");
+        let by_mass = second * f64::sqrt(light);
+        let before = *of_shaft.get_or_insert(by_mass);
+        assert!((by_mass / before - 1.0).abs() < 1e-5, "{light}: {second}");
+    }
+    let stiffness = ["ei_y", "ei_z"].map(|key| format!("/bodies/shaft/beam/section/given/{key}"));
+    file["variables"] = json!({
+        "mass": {"path": "/bodies/disc/mass", "lower": 1},
+        "stiffness": {"paths": stiffness, "lower": 100}
+    });
+    gradients_are_exact(&parsed(&file), &json!("light shaft"));
+}

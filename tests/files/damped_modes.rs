@@ -390,6 +390,57 @@ fn what_has_no_damped_modes_is_told() {
     );
 }
 
+/// Damping by stiffness gives each mode ζ = π f β, however thin the plate is: its stretch is stiffer than its bending by the square of
+/// length by thickness.
+#[test]
+fn thin_plates_have_the_damping_of_their_bending() {
+    let damping = 1e-4;
+    let mut first = None;
+    for thickness in [1e-2, 1e-3, 1e-4] {
+        let file = json!({
+            "version": 1, "name": "plate", "analysis": "modes", "gravity": [0, 0, 0],
+            "materials": {"aluminium": {"young": 7e10, "poisson": 0.3, "density": 2700}},
+            "bodies": {"plate": {
+                "elements": {
+                    "structure": {
+                        "mesh": {"plate": {"length": 1, "width": 0.5, "elements": [6, 3]}},
+                        "material": "aluminium", "thickness": thickness,
+                        "damping": {"stiffness": damping}
+                    },
+                    "frame": {"clamped": "x0"}, "points": {"root": {"rigid": "x0"}}
+                },
+                "place": {"put": "root"}
+            }},
+            "joints": {"clamp": {"weld": {"between": ["plate", "ground"], "at": "plate.root"}}},
+            "functions": {
+                "first": {"frequency": {"mode": 1}},
+                "of first": {"damping_ratio": {"mode": 1}},
+                "fifth": {"frequency": {"mode": 5}},
+                "of fifth": {"damping_ratio": {"mode": 5}},
+                "damped": {"frequency": {"mode": 5, "damped": true}}
+            }
+        });
+        let found = values(&file);
+        for k in [0, 2] {
+            let expected = PI * found[k] * damping;
+            let off = found[k + 1] / expected - 1.0;
+            assert!(off.abs() < 1e-9, "{thickness}: {} {expected}", found[k + 1]);
+        }
+        let damped = found[2] * (1.0 - found[3] * found[3]).sqrt();
+        assert!(
+            (found[4] / damped - 1.0).abs() < 1e-9,
+            "{thickness}: {damped}"
+        );
+        // Bending of thin plates: f ∝ h.
+        let by_thickness = found[0] / thickness;
+        let before = *first.get_or_insert(by_thickness);
+        assert!(
+            (by_thickness / before - 1.0).abs() < 1e-3,
+            "{by_thickness} {before}"
+        );
+    }
+}
+
 /// The modes of the lamp move its arms as far as can be seen, and no farther.
 #[test]
 fn pictures_show_the_shapes() {

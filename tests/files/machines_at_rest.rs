@@ -27,7 +27,7 @@ pub fn hinge(between: [&str; 2], at: Value) -> Value {
     json!({"revolute": {"between": between, "at": at, "axis": [0, 0, 1]}})
 }
 
-fn notes_of(document: &Value) -> Vec<String> {
+pub(super) fn notes_of(document: &Value) -> Vec<String> {
     let problem = parsed(document);
     notes(&problem, &problem.start())
 }

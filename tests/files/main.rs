@@ -16,6 +16,7 @@ mod benchmarks;
 mod buckling;
 mod cases;
 mod circles;
+mod closed_loops;
 mod committed_problems;
 mod controllers;
 mod critical_speeds;

@@ -163,6 +163,12 @@ pub struct Range {
 /// Number of designs between the bounds at which a reduction is examined.
 const BETWEEN: usize = 4;
 
+/// What makes scenes at other designs, and with derivatives.
+pub type Makers<'a> = (
+    &'a dyn Fn(&[f64]) -> Scene<f64>,
+    &'a dyn Fn(&[Dual]) -> Scene<Dual>,
+);
+
 /// The scenes in which a reduction is examined.
 #[derive(Clone)]
 pub(super) struct Designs {
@@ -182,17 +188,12 @@ impl Designs {
             .all(|scene| super::parts(&scene.model) == parts)
     }
 
-    /// The scenes that `real` and `dual` make.
-    pub fn new(
-        real: &dyn Fn(&[f64]) -> Scene<f64>,
-        dual: &dyn Fn(&[Dual]) -> Scene<Dual>,
-        variables: &[Range],
-    ) -> Self {
-        let start: Vec<f64> = variables.iter().map(|variable| variable.start).collect();
+    /// The scene at the start, and those that `real` and `dual` make.
+    pub fn new(start: Scene<f64>, (real, dual): Makers, variables: &[Range]) -> Self {
         let seed = |i: usize| -> Vec<Dual> {
             let part = |j: usize| if i == j { 1.0 } else { 0.0 };
-            let start = start.iter().enumerate();
-            start.map(|(j, &x)| Dual::new(x, part(j))).collect()
+            let all = variables.iter().enumerate();
+            all.map(|(j, own)| Dual::new(own.start, part(j))).collect()
         };
         let derived = variables.iter().enumerate().map(|(i, variable)| {
             // The scale of the optimiser may be small; it does not bound the effect of the
@@ -203,7 +204,7 @@ impl Designs {
         Self {
             derived: derived.collect(),
             others: designs(variables).iter().map(|x| real(x)).collect(),
-            start: real(&start),
+            start,
         }
     }
 

@@ -19,7 +19,7 @@ mod reactions;
 pub mod unseen;
 pub mod welded;
 
-pub use examine::{Range, ViolatedCondition};
+pub use examine::{Makers, Range, ViolatedCondition};
 pub use fixed::Fixed;
 pub use non_rotating::NonRotating;
 pub use planar::Plane;
@@ -28,7 +28,7 @@ pub use welded::Welded;
 
 use crate::functions::{Instant, Scene};
 use crate::integrate::Trajectory;
-use crate::math::{Dual, Scalar};
+use crate::math::Scalar;
 use crate::model::{ConstraintRow, Mobility, Model};
 use crate::system::redundancy;
 use characteristic_length::Reach;
@@ -86,12 +86,8 @@ fn parts<S>(model: &Model<S>) -> [usize; 3] {
 
 impl Lowering {
     /// Finds the reductions of the scenes that `real` and `dual` make of a design.
-    pub fn find(
-        real: &dyn Fn(&[f64]) -> Scene<f64>,
-        dual: &dyn Fn(&[Dual]) -> Scene<Dual>,
-        variables: &[Range],
-    ) -> Self {
-        let mut designs = Designs::new(real, dual, variables);
+    pub fn find(start: Scene<f64>, others: Makers, variables: &[Range]) -> Self {
+        let mut designs = Designs::new(start, others, variables);
         if let Some(none) = Self::of_unlike(&designs) {
             return none;
         }
@@ -136,12 +132,8 @@ impl Lowering {
 
     /// The plane of the motion alone: all bodies keep their numbers and all of their states, with which another scene
     /// may begin.
-    pub fn of_plane(
-        real: &dyn Fn(&[f64]) -> Scene<f64>,
-        dual: &dyn Fn(&[Dual]) -> Scene<Dual>,
-        variables: &[Range],
-    ) -> Self {
-        let designs = Designs::new(real, dual, variables);
+    pub fn of_plane(start: Scene<f64>, others: Makers, variables: &[Range]) -> Self {
+        let designs = Designs::new(start, others, variables);
         Self::of_unlike(&designs).unwrap_or_else(|| {
             let plane = Plane::find(&designs);
             Self::of_plane_and_points(&designs, plane, (Vec::new(), Vec::new()))

@@ -55,7 +55,7 @@ impl Earlier {
             return Err(fault(
                 1,
                 "the evaluations of another problem or start".into(),
-                "those of this one; give the same file, --set and --from, or leave --resume out",
+                "those of this one; give the same file, the same files that it names, --set and --from, or leave --resume out",
             ));
         }
         if let Some((found, expected)) = head.other_form(&written) {

@@ -140,10 +140,24 @@ fn found(
     axis: &Turning<f64>,
     number: usize,
 ) -> Result<Excited, AssemblyFailure> {
+    let from_soft = found_from(machine, axis, (number, true));
+    from_soft.or_else(|why| found_from(machine, axis, (number, false)).map_err(|_| why))
+}
+
+/// The same from the softest vibration, or from that of the rate of the machine.
+fn found_from(
+    machine: Machine<f64>,
+    axis: &Turning<f64>,
+    (number, soft): (usize, bool),
+) -> Result<Excited, AssemblyFailure> {
     let mut at = 0.0;
     let mut before: Option<(f64, f64)> = None;
+    let mut seen = Seen {
+        soft,
+        ..Seen::default()
+    };
     for _ in 0..ITERATIONS {
-        let (next, own) = at_equilibrium(machine, axis, (at, number))?;
+        let (next, own) = at_equilibrium(machine, axis, (at, number), &mut seen)?;
         let off = next - at;
         let stagnant = before.is_some_and(|(_, last)| off.abs() > 0.5 * last.abs());
         if off.abs() <= CLOSE * next || stagnant && off.abs() <= STAGNANT * next {
@@ -166,11 +180,23 @@ fn found(
     none(format!("critical speed {number} does not converge"))
 }
 
+/// What the search at standstill leaves to those at speed.
+#[derive(Default)]
+struct Seen {
+    /// Whether it begins at the softest vibration.
+    soft: bool,
+    /// A speed at which N is found with least round-off.
+    firm: f64,
+    /// The critical speeds below the wanted one, which a search near it may leave out.
+    below: Vec<f64>,
+}
+
 /// The critical speed of this number if positions and reactions stay as they are at a speed.
 fn at_equilibrium(
     (model, numbering, known): Machine<f64>,
     axis: &Turning<f64>,
     (speed, number): (f64, usize),
+    seen: &mut Seen,
 ) -> Result<Excited, AssemblyFailure> {
     let turning = axis.at_speed(speed);
     let of = (model, numbering, Sought::Rest);
@@ -183,35 +209,44 @@ fn at_equilibrium(
         };
         let mut matrices = of(0.0);
         let still = matrices.stiffness.values.clone();
-        // Motions without stiffness at any speed, such as a free spin, have some inertia then.
-        let least = match speed > 0.0 {
-            true => LEAST * speed * speed,
-            false => FLOOR * found.rate,
-        };
-        let inertia = matrices.mass.values.iter();
-        for (k, m) in matrices.stiffness.values.iter_mut().zip(inertia) {
-            *k += least * m;
+        if speed == 0.0 {
+            seen.firm = found.rate.sqrt();
         }
-        // A speed of the size of the sought one: that of 1 rad/s would leave N with the round-off of K.
-        let scale = match speed > 0.0 {
-            true => speed,
-            false => found.rate.sqrt(),
-        };
+        // A speed of the size of the vibrations: that of 1 rad/s would leave N with the round-off of K.
+        let scale = speed.max(seen.firm);
         let [forward, backward] = [scale, -scale].map(|speed| of(speed).stiffness.values);
         let parts = forward.iter().zip(&backward);
         let turned = parts.zip(&still);
         let turned: Vec<f64> = turned
             .map(|((a, b), k)| (k - 0.5 * (a + b)) / (scale * scale))
             .collect();
-        let free = (FREE * found.rate).max(ABOVE * least);
         let allowed = At::rest(layout, solver.model, found, None).freedom();
-        let rates = (found.rate, free);
-        let left_out = unresisted(&matrices, &turned, rates, allowed)?;
-        let allowed = allowed - left_out.len();
-        matrices.left_out = left_out;
+        let mut rate = found.rate;
+        let (free, unresisted) = loop {
+            // Motions without stiffness at any speed, such as a free spin, have some inertia then.
+            let least = match speed > 0.0 {
+                true => LEAST * speed * speed,
+                false => FLOOR * rate,
+            };
+            let inertia = matrices.mass.values.iter();
+            let entries = still.iter().zip(inertia).map(|(k, m)| k + least * m);
+            matrices.stiffness.values = entries.collect();
+            let free = (FREE * rate).max(ABOVE * least);
+            let unresisted = unresisted(&matrices, &turned, (rate, free, least), allowed)?;
+            match unresisted.softest {
+                // The rate is that of a light part. A heavy one on it vibrates far more slowly.
+                Some(softest) if seen.soft && speed == 0.0 && softest < rate => rate = softest,
+                _ => break (free, unresisted),
+            }
+        };
+        let allowed = allowed - unresisted.motions.len();
+        matrices.left_out = unresisted.motions;
         matrices.mass.values = turned;
         // A motion along the axis has no part in N but its round-off, with a speed above these.
-        let scales = (found.rate.sqrt(), free.sqrt()..LARGEST * scale);
+        let scales = (rate.sqrt(), free.sqrt()..LARGEST * scale);
+        let hidden = seen.below.iter().filter(|&&own| own <= free.sqrt());
+        let hidden = hidden.count();
+        let number = number - hidden;
         let mut count = 2 * number + 2;
         loop {
             let own = lowest(&matrices, scales.clone(), (count, allowed))?;
@@ -228,15 +263,20 @@ fn at_equilibrium(
                 all.len().saturating_sub(1)
             };
             if there >= number {
+                if speed == 0.0 && seen.soft {
+                    let below = all[..number - 1].iter();
+                    seen.below = below.map(|own| own[0].im).collect();
+                }
                 let own = cluster(&matrices, &all[number - 1])?;
                 let mean = own.values.iter().map(|s| s.im).sum::<f64>() / own.values.len() as f64;
                 return Ok((mean, own));
             }
             if own.all {
+                let sought = format!("critical speed {} is not found", number + hidden);
                 let about = format!("about rest at {speed:.4} rad/s");
-                return none(match there {
-                    0 => format!("critical speed {number} is not found: {about} there is none"),
-                    _ => format!("critical speed {number} is not found: {about} there are {there}"),
+                return none(match there + hidden {
+                    0 => format!("{sought}: {about} there is none"),
+                    all => format!("{sought}: {about} there are {all}"),
                 });
             }
             count *= 2;

@@ -21,10 +21,13 @@ use crate::math::{Complex64, Scalar};
 use crate::structures::modes::MOST_MODES;
 use crate::system::failure::AssemblyFailure;
 use std::f64::consts::PI;
+use std::ops::Range;
 
 /// Relative distance of a growth from the eigenvalue that it is found to be, and how many are looked at.
 const NEAR: f64 = 1e-4;
 const MOST_GROWING: usize = 16;
+/// Rates that count, relative to that of the lowest mode without damping.
+const SLOWER: f64 = 1e-2;
 /// Dimension up to which all motions in steady rotation are looked at.
 const WHOLE: usize = 200;
 /// Number of spectra that are known.
@@ -59,6 +62,9 @@ impl<S: Scalar> DampedVibration<S> {
         }
     }
 }
+
+/// σ of a search, and sizes |s| that count.
+type Scales = (f64, Range<f64>);
 
 /// The rates of a machine, its lowest |s| first, by clusters.
 #[derive(Clone, Debug)]
@@ -134,8 +140,12 @@ impl Solver<'_> {
         match own.diverging {
             Some(rate) if all_needed => {
                 let time = 1.0 / rate;
+                let what = match self.given.turning {
+                    Some(_) => "the rotation",
+                    None => "it",
+                };
                 let why = format!(
-                    "the rotation is not stable: a motion grows by a factor of e in {time:.1e} s without an oscillation"
+                    "{what} is not stable: a motion grows by a factor of e in {time:.1e} s without an oscillation"
                 );
                 Err(AssemblyFailure::NoModes { why })
             }
@@ -143,27 +153,72 @@ impl Solver<'_> {
         }
     }
 
-    /// The fastest growth of a motion in steady rotation: of all motions if they are few, else of those in a spectrum.
+    /// The fastest growth of a motion in steady rotation or of a closed loop: of all motions if they are few, else of those in
+    /// a spectrum.
     ///
     /// # Errors
     /// Singular equations.
-    pub(super) fn growth_in_rotation(
+    pub(super) fn fastest_growth(
         &self,
         found: &State<f64>,
         spectrum: &Spectrum,
     ) -> Result<Option<f64>, AssemblyFailure> {
-        let turning = self.given.turning.as_ref();
-        let at = At::rest(self.layout, self.model, found, turning);
-        let allowed = at.freedom();
-        if turning.is_some() && 0 < allowed && 2 * allowed <= WHOLE {
-            let matrices = Matrices::new(at, true);
-            let rates = (found.rate.sqrt(), (FREE * found.rate).sqrt());
-            let all = growing(&matrices, rates, allowed)?;
-            return Ok(confirmed(&matrices, all.into_iter()));
+        let all = match self.given.turning.is_some() || self.model.is_controlled() {
+            true => self.growth_of_all(found, false)?,
+            false => None,
+        };
+        if let Some(growth) = all {
+            return Ok(growth);
         }
         let rates = spectrum.clusters.iter().flat_map(|own| &own.values);
         let growing = rates.filter(|s| s.re > GROWS * s.norm()).map(|s| s.re);
         Ok(growing.chain(spectrum.diverging).reduce(f64::max))
+    }
+
+    /// The fastest growth of all motions, with their damping and running controllers; none if they are many, unless `however_many`.
+    ///
+    /// # Errors
+    /// Singular equations.
+    pub(super) fn growth_of_all(
+        &self,
+        found: &State<f64>,
+        however_many: bool,
+    ) -> Result<Option<Option<f64>>, AssemblyFailure> {
+        let released = Released::of((self.model, self.layout.numbering), found)?;
+        let at = match &released {
+            Some(own) => own.at(),
+            None => At::rest(self.layout, self.model, found, self.given.turning.as_ref()),
+        };
+        let allowed = at.freedom();
+        if allowed == 0 || !however_many && 2 * allowed > WHOLE {
+            return Ok(None);
+        }
+        let matrices = Matrices::new(at, true);
+        let rates = (found.rate.sqrt(), (FREE * found.rate).sqrt());
+        let all = growing(&matrices, rates, allowed)?;
+        Ok(Some(confirmed(&matrices, all.into_iter())))
+    }
+
+    /// σ of a search, and sizes |s| that count, from modes without damping: the rate of a machine of finite elements is that of
+    /// the stretch of thin plates. `None` where they do not tell it.
+    ///
+    /// # Errors
+    /// Round-off hides the modes.
+    fn nearer(
+        &self,
+        found: &State<f64>,
+        wanted: &WantedModes,
+        (rate, least): (f64, f64),
+    ) -> Result<Option<Scales>, AssemblyFailure> {
+        if self.given.turning.is_some() || self.model.is_controlled() {
+            return Ok(None);
+        }
+        let near = self.reach_of_modes(found, wanted)?;
+        let scales = |[lowest, highest]: [f64; 2]| {
+            let near = (highest, least.min(SLOWER * lowest)..f64::INFINITY);
+            (highest < rate).then_some(near)
+        };
+        Ok(near.and_then(scales))
     }
 
     fn sought(
@@ -176,7 +231,7 @@ impl Solver<'_> {
         let turning = self.given.turning.as_ref();
         let released = Released::of((self.model, self.layout.numbering), found)?;
         // Damping ratios tell whether a closed loop is stable.
-        if turning.is_none() && released.is_none() {
+        if turning.is_none() && !(damped && self.model.is_controlled()) {
             let stability = self.with_factors(found, |own| self.stability(own, found))??;
             if stability.growth.is_some() {
                 return none("it is not stable".into());
@@ -188,17 +243,28 @@ impl Solver<'_> {
         };
         let matrices = Matrices::new(at, damped).with_strains(at, damped);
         let allowed = at.freedom();
-        let scales = (found.rate.sqrt(), (FREE * found.rate).sqrt()..f64::INFINITY);
+        let (rate, least) = (found.rate.sqrt(), (FREE * found.rate).sqrt());
+        let near = match matrices.have_nodes() {
+            true => self.nearer(found, wanted, (rate, least))?,
+            false => None,
+        };
         // An aggregate needs one.
         let asked = wanted.count.max(1);
         let mut count = wanted.least().max(1);
         let (values, diverging) = loop {
-            let own = lowest(&matrices, scales.clone(), (count, allowed))?;
+            let counts = (count, allowed);
+            let by_rate = || lowest(&matrices, (rate, least..f64::INFINITY), counts);
+            let own = match &near {
+                Some(near) => lowest(&matrices, near.clone(), counts).or_else(|_| by_rate())?,
+                None => by_rate()?,
+            };
             let there = own.values.len();
-            let diverging = turning.and_then(|_| {
-                let real = |&rate: &f64| Complex64::new(rate, 0.0);
-                confirmed(&matrices, own.diverging.iter().map(real))
-            });
+            let grows = turning.is_some() || damped && self.model.is_controlled();
+            let real = |&rate: &f64| Complex64::new(rate, 0.0);
+            let diverging = match grows {
+                true => confirmed(&matrices, own.diverging.iter().map(real)),
+                false => None,
+            };
             if own.all && there < asked && all_needed && diverging.is_none() {
                 return none(format!("mode {asked} is asked for, and there are {there}"));
             }

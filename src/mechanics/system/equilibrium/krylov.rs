@@ -267,21 +267,8 @@ fn search(
     }
 }
 
-/// The fastest growth Re s of motions whose rate is above `least`, of all that the joints allow or of those of least size if
-/// there are very many; `None` if none grows.
-///
-/// # Errors
-/// Singular equations.
-pub(super) fn growth(
-    matrices: &Matrices,
-    rates: (f64, f64),
-    allowed: usize,
-) -> Result<Option<f64>, AssemblyFailure> {
-    let all = growing(matrices, rates, allowed)?;
-    Ok(all.iter().map(|s| s.re).reduce(f64::max))
-}
-
-/// The rates of all these motions that grow, by size, without the conjugate ones.
+/// The rates of motions that grow, by size, without the conjugate ones: those above `least`, of all motions that the joints allow
+/// or of those of least size if there are very many.
 ///
 /// # Errors
 /// Singular equations.

@@ -40,11 +40,20 @@ const SAME: f64 = 1e-9;
 
 /// σ is raised to that of the lowest mode if it is below this part of it.
 const SMALL_SHIFT: f64 = 1e-2;
+/// Where nothing is free, σ is lowered if it is this number of times that of the highest mode, or by the second factor if no mode
+/// converges, down to a part of the least one of rest.
+const LARGE_SHIFT: f64 = 1e2;
+const LOWER: f64 = 1e-3;
+const LEAST_SHIFT: f64 = 1e-10;
 
 /// Steps that refine modes, and the largest change of one with yᵀ M y = 1. Where a larger one is left, the space lacks parts of
 /// the mode.
 const REFINEMENTS: usize = 2;
 const REFINED: f64 = 1e-6;
+/// Part of ω² that round-off of the stiffest motions may be after these.
+const HIDDEN: f64 = 1e-6;
+const ROUND_OFF: &str =
+    "round-off of the stiffest motions hides the lowest modes, as of plates that are very thin";
 
 /// First number of modes of an aggregate.
 const FIRST: usize = 6;
@@ -92,7 +101,7 @@ impl WantedModes {
     }
 
     fn suffice(&self, modes: &[Mode]) -> bool {
-        let frequency = |mode: &Mode| mode.square.max(0.0).sqrt() / (2.0 * std::f64::consts::PI);
+        let frequency = |mode: &Mode| mode.rate() / (2.0 * std::f64::consts::PI);
         self.reach(&modes.iter().map(frequency).collect::<Vec<f64>>())
     }
 
@@ -121,6 +130,13 @@ pub(super) struct Mode {
     left: Option<Vec<f64>>,
     /// Whether another one has the same frequency, so that it has no derivative.
     repeated: bool,
+}
+
+impl Mode {
+    /// ω \[rad/s\].
+    fn rate(&self) -> f64 {
+        self.square.max(0.0).sqrt()
+    }
 }
 
 /// (K + σ M̃)⁻¹ M on the motions that the joints allow.
@@ -198,6 +214,36 @@ impl Softened<'_> {
 }
 
 impl Solver<'_> {
+    /// The lowest and the highest rate ω \[rad/s\] of the modes that are wanted; `None` if they are not found, or beside free
+    /// motions.
+    ///
+    /// # Errors
+    /// Round-off of the stiffest motions hides them.
+    pub(super) fn reach_of_modes(
+        &self,
+        found: &State<f64>,
+        wanted: &WantedModes,
+    ) -> Result<Option<[f64; 2]>, AssemblyFailure> {
+        let free = self.with_factors(found, |factors| self.free_motions(factors, found))??;
+        if !free.is_empty() {
+            return Ok(None);
+        }
+        let modes = match self.known.modes(&self.numbers) {
+            Some(modes) => modes,
+            None => {
+                match self.with_factors(found, |factors| self.modes(factors, found, wanted))? {
+                    Err(AssemblyFailure::NoModes { why }) if why != ROUND_OFF => None,
+                    modes => modes?,
+                }
+            }
+        };
+        let ends = modes.as_ref().map(|own| [own.first(), own.last()]);
+        Ok(match ends {
+            Some([Some(first), Some(last)]) => Some([first.rate(), last.rate()]),
+            _ => None,
+        })
+    }
+
     /// The lowest modes at a solution that are wanted, with its factors; `None` if loads have no potential, or σ hides modes.
     /// Free motions do not count.
     ///
@@ -240,9 +286,16 @@ impl Solver<'_> {
             if there < if all { wanted.count.max(1) } else { count } {
                 // Lanczos converges for symmetric matrices.
                 if !all && !self.is_symmetric(&mut softened, found) {
-                    self.lower_shift(&mut softened, found, shift)?;
+                    self.restore_shift(&mut softened, found, shift)?;
                     return Ok(None);
                 }
+                if !all && free.len() == 0 && shift > LEAST_SHIFT * self.least_shift(found) {
+                    shift *= LOWER;
+                    let made = (softened.factors).make(self.layout, self.model, (found, shift));
+                    made.map_err(|_| AssemblyFailure::Singular)?;
+                    continue;
+                }
+                self.restore_shift(&mut softened, found, shift)?;
                 return none(match all {
                     true => format!(
                         "mode {} is asked for, and there are {there}",
@@ -252,10 +305,22 @@ impl Solver<'_> {
                 });
             }
             let Some(mut modes) = self.ritz(&mut softened, found, space)? else {
-                self.lower_shift(&mut softened, found, shift)?;
+                self.restore_shift(&mut softened, found, shift)?;
                 return Ok(None);
             };
-            let good = self.refine(&mut softened, found, (&free, &mut modes));
+            // A large σ hides what the space lacks.
+            let highest = modes.last().map_or(0.0, |own| own.square);
+            let lower = highest.max(LEAST_SHIFT * self.least_shift(found));
+            if free.len() == 0 && shift > LARGE_SHIFT * lower {
+                shift = lower;
+                let made = (softened.factors).make(self.layout, self.model, (found, shift));
+                made.map_err(|_| AssemblyFailure::Singular)?;
+                continue;
+            }
+            let Some(good) = self.refine(&mut softened, found, (&free, &mut modes)) else {
+                self.restore_shift(&mut softened, found, shift)?;
+                return none(ROUND_OFF.into());
+            };
             modes.truncate(count);
             // Solutions have round-off along free motions, which a small σ magnifies.
             let lowest = modes.first().map_or(0.0, |own| own.square);
@@ -267,7 +332,7 @@ impl Solver<'_> {
             }
             // σ M̃ hides modes of light bodies in large scenes. The search for damped ones is slower, and needs no M̃.
             if good < modes.len() {
-                self.lower_shift(&mut softened, found, shift)?;
+                self.restore_shift(&mut softened, found, shift)?;
                 return Ok(None);
             }
             if all || wanted.suffice(&modes) {
@@ -282,7 +347,7 @@ impl Solver<'_> {
         };
         let symmetric = (self.model.loads.iter()).all(|load| load.kind.has_potential())
             || self.find_left(&mut softened, shift, (&free, &mut out));
-        self.lower_shift(&mut softened, found, shift)?;
+        self.restore_shift(&mut softened, found, shift)?;
         Ok(symmetric.then_some(out))
     }
 
@@ -313,14 +378,14 @@ impl Solver<'_> {
         })
     }
 
-    /// Makes the factors with the least σ again, if they are with a larger one. Kept ones are the same as new ones.
-    fn lower_shift(
+    /// Makes the factors with the least σ again, if they are with another one. Kept ones are the same as new ones.
+    fn restore_shift(
         &self,
         softened: &mut Softened,
         found: &State<f64>,
         shift: f64,
     ) -> Result<(), AssemblyFailure> {
-        match shift > self.least_shift(found) {
+        match shift != self.least_shift(found) {
             true => self.factorise_at(softened.factors, found),
             false => Ok(()),
         }
@@ -395,18 +460,18 @@ impl Solver<'_> {
     /// Refines modes by their residuals r = K y + Gᵀ μ − ω² M y. Lanczos and Ritz leave round-off of the extreme eigenvalues
     /// in all vectors. The error along another mode is y_jᵀ r / (ω_j² − ω²); the rest of it falls by (K + σ M̃)⁻¹ r.
     /// What it adds along free motions is round-off, and a large change is no refinement. Returns how many of the first modes
-    /// need no larger change.
+    /// need no larger change; `None` if round-off of the stiffest motions is more than the stiffness of a mode.
     fn refine(
         &self,
         softened: &mut Softened,
         found: &State<f64>,
         (free, modes): (&Basis, &mut [Mode]),
-    ) -> usize {
+    ) -> Option<usize> {
         let (layout, model) = (self.layout, self.model);
         let n = layout.numbering.unknowns();
         let along = layout.along(model, self.given, found);
         let mut good = modes.len();
-        for _ in 0..REFINEMENTS {
+        for refinement in 1..=REFINEMENTS {
             let (mut heavy, mut rests) = (Vec::new(), Vec::new());
             for mode in &mut *modes {
                 let own = layout.mass_product(model, softened.motions, &mode.shape[..n]);
@@ -436,13 +501,19 @@ impl Solver<'_> {
                     good = good.min(k);
                     continue;
                 }
+                // What the residual still makes of ω².
+                let error = dot(&rest[..n], &change[..n]).abs();
+                let is_last = refinement == REFINEMENTS && free.len() == 0;
+                if is_last && error > HIDDEN * mode.square.abs() {
+                    return None;
+                }
                 add_scaled(&mut mode.shape, -1.0, &change);
                 let heavy = layout.mass_product(model, softened.motions, &mode.shape[..n]);
                 let size = dot(&mode.shape[..n], &heavy).sqrt();
                 mode.shape.iter_mut().for_each(|x| *x /= size);
             }
         }
-        good
+        Some(good)
     }
 }
 

@@ -9,7 +9,10 @@
 
 use super::equations::{Layout, State};
 use super::turning::{Frames, Steady, Turning, Weights};
-use crate::linalg::{Emit, Pattern, SingularMatrix, SolveScalar, SparseLu, SparseMatrix};
+use crate::linalg::{
+    Emit, KnownPivots, Pattern, SingularMatrix, SolveScalar, SparseLu, SparseMatrix,
+};
+use crate::math::slices::any_vector;
 use crate::math::{Complex64, Scalar};
 use crate::model::Model;
 use crate::system::bodies::BodyMotion;
@@ -22,6 +25,9 @@ use crate::system::loads::{self, LoadEntries};
 use crate::system::numbering::Numbering;
 use crate::system::reduce::{self, emit_reduced};
 use crate::system::redundant_rows::RedundantRows;
+
+/// Part of the sizes of its terms that an equation may leave, if pivots that are known beforehand are good ones.
+const SOUND: f64 = 1e-6;
 
 /// A model at a state, about which motions are small.
 #[derive(Clone, Copy)]
@@ -254,6 +260,11 @@ impl Matrices {
         let pattern = Pattern::record(order, |to: &mut dyn Emit<f64>| {
             emit_pencil(at, Weights::at(1.0), to);
         });
+        let nodal = flexible::nodal_unknowns(at.model, at.numbering);
+        let pattern = pattern.with_pivots(KnownPivots {
+            short: Vec::new(),
+            inner: nodal.into_iter().map(|i| (i, i)).collect(),
+        });
         let of = |stiffness: f64, damping: f64, mass: f64| {
             let weights = Weights {
                 stiffness,
@@ -285,6 +296,11 @@ impl Matrices {
             Some(own) => own.products(x, transposed),
             None => [&self.stiffness, &self.damping].map(|own| product(own, x, transposed)),
         }
+    }
+
+    /// Whether the machine has finite elements.
+    pub(super) fn have_nodes(&self) -> bool {
+        self.pattern.known_pivots().is_some()
     }
 
     /// Number of unknowns and multipliers.
@@ -323,10 +339,38 @@ impl Matrices {
     /// # Errors
     /// A singular matrix.
     pub(super) fn factors<S: SolveScalar>(&self, s: S) -> Result<SparseLu<S>, SingularMatrix> {
-        let mut factors = SparseLu::new(&self.pattern);
-        factors.factorise(&self.combined(s))?;
+        let matrix = self.combined(s);
+        if self.pattern.known_pivots().is_some() {
+            let mut factors = SparseLu::new(&self.pattern);
+            if factors.factorise(&matrix).is_ok() && are_sound(&mut factors, &matrix) {
+                return Ok(factors);
+            }
+        }
+        // Beyond the lowest modes a matrix is not definite: then pivots are searched.
+        let mut factors = SparseLu::new(&self.pattern.clone().with_pivots(KnownPivots::default()));
+        factors.factorise(&matrix)?;
         Ok(factors)
     }
+}
+
+/// Whether factors solve a system but for round-off, each equation relative to the sizes of its terms.
+fn are_sound<S: SolveScalar>(factors: &mut SparseLu<S>, matrix: &SparseMatrix<S>) -> bool {
+    let right = any_vector(matrix.pattern.order(), 1.7);
+    let mut x: Vec<S> = right.iter().map(|&x| S::from(x)).collect();
+    factors.solve(&mut x);
+    let left = matrix.multiply(&x);
+    let mut sizes = SparseMatrix::new(matrix.pattern.clone());
+    for (size, value) in sizes.values.iter_mut().zip(&matrix.values) {
+        *size = self::size(*value);
+    }
+    let terms = sizes.multiply(&x.iter().map(|&x| size(x)).collect::<Vec<f64>>());
+    let mut rows = left.iter().zip(&right).zip(&terms);
+    rows.all(|((&l, &r), terms)| size(l - S::from(r)) <= SOUND * (terms + r.abs()))
+}
+
+/// |Re x| + |Im x|.
+fn size<S: Scalar>(x: S) -> f64 {
+    x.re().abs() + x.infinitesimal().abs()
 }
 
 /// The entries a_ii.

@@ -11,8 +11,7 @@
 //! Positions and the reactions of joints stay. So the machine is in the state of a motion at an instant, at which it rests.
 
 use super::equations::State;
-use super::krylov::growth;
-use super::pencil::{At, Matrices, Moves};
+use super::pencil::{At, Moves};
 use crate::math::{Scalar, Vec3};
 use crate::model::controller::Coordinate;
 use crate::model::{DegreeOfFreedom, LoadKind, Model};
@@ -104,17 +103,6 @@ impl<S: Scalar> Released<S> {
                 time: S::zero(),
             },
         }
-    }
-}
-
-impl Released<f64> {
-    /// The fastest growth of a disturbance \[1/s\], with a shift and the least rate \[1/s\] that counts; `None` if none grows.
-    ///
-    /// # Errors
-    /// Singular equations.
-    pub(super) fn growth(&self, scales: (f64, f64)) -> Result<Option<f64>, AssemblyFailure> {
-        let at = self.at();
-        growth(&Matrices::new(at, true), scales, at.freedom())
     }
 }
 

@@ -9,7 +9,6 @@
 use super::equations::State;
 use super::matrix::{Factors, RigidMetric};
 use super::pencil::{At, Matrices};
-use super::released::Released;
 use super::ritz::ritz_vectors;
 use super::{KnownStarts, Solver, Sought, at_solution};
 use crate::math::slices::{add_scaled, dot};
@@ -27,6 +26,8 @@ const NOISE: f64 = 1e-12;
 const UNLOADED: f64 = 1e-4;
 /// The least stiffness of a vibration among soft motions, relative to the largest: less is a trace of it in a free one.
 const ELASTIC: f64 = 1e-7;
+/// So many soft motions are looked at for a rate.
+const MANY: usize = 48;
 /// A body takes part in a free motion if it moves by this part of the largest.
 const MOVES: f64 = 0.05;
 /// Inverse iterations of a free motion.
@@ -57,7 +58,14 @@ pub struct Stability {
 /// If there is no rest.
 pub fn stability(model: &Model<f64>, known: &KnownStarts) -> Result<Stability, AssemblyFailure> {
     at_solution(model, known, Sought::Rest, |solver, factors, found| {
-        solver.stability(factors, found)
+        let mut out = solver.stability(factors, found)?;
+        // The forces of controllers have no potential: the stiffness does not tell what grows.
+        if model.is_controlled()
+            && let Some(growth) = solver.growth_of_all(found, model.is_settled())?
+        {
+            out.growth = growth;
+        }
+        Ok(out)
     })
 }
 
@@ -158,7 +166,7 @@ impl Solver<'_> {
         }
     }
 
-    /// The stability of a solution, with its factors.
+    /// The stability of a solution by its stiffness, with its factors.
     pub(super) fn stability(
         &self,
         factors: &mut Factors,
@@ -168,14 +176,8 @@ impl Solver<'_> {
             snapped: found.snapped,
             ..Stability::default()
         };
-        let released = Released::of((self.model, self.layout.numbering), found)?;
-        if let Some(released) = &released {
-            let scales = (found.rate.sqrt(), (FREE * found.rate).sqrt());
-            out.growth = released.growth(scales)?;
-        }
         for (stiffness, y) in self.soft_motions(factors, found)? {
-            // With the states of controllers the machine is another.
-            if released.is_none() && stiffness < -FREE * found.rate {
+            if stiffness < -FREE * found.rate {
                 let rate = (-stiffness).sqrt();
                 out.growth = Some(out.growth.map_or(rate, |other| other.max(rate)));
             } else if stiffness <= FREE * found.rate {
@@ -251,11 +253,16 @@ impl Solver<'_> {
         let mut at = placed.clone();
         at.rate = stiffest;
         self.factorise_at(factors, &at)?;
-        let soft = self.soft_motions(factors, &at)?.into_iter();
-        let elastic = soft
-            .map(|(rate, _)| rate)
-            .filter(|&rate| rate > ELASTIC * stiffest);
-        Ok(Some(elastic.fold(UNLOADED * stiffest, f64::min)))
+        let soft = self.softest_motions(factors, &at, MANY)?;
+        // Thin plates have thousands of soft vibrations.
+        let vibrations = (soft.iter()).filter(|(rate, _)| *rate > f64::EPSILON * stiffest);
+        let largest = match 2 * vibrations.count() < MANY {
+            true => UNLOADED,
+            false => ELASTIC,
+        };
+        let rates = soft.into_iter().map(|(rate, _)| rate);
+        let elastic = rates.filter(|&rate| rate > ELASTIC * stiffest);
+        Ok(Some(elastic.fold(largest * stiffest, f64::min)))
     }
 
     /// Motions y with K y = λ M̃ y on G y = 0 and their λ, those with λ below the least σ, with the factors of a solution.
@@ -263,6 +270,16 @@ impl Solver<'_> {
         &self,
         factors: &mut Factors,
         found: &State<f64>,
+    ) -> Result<Vec<(f64, Vec<f64>)>, AssemblyFailure> {
+        self.softest_motions(factors, found, usize::MAX)
+    }
+
+    /// The softest of them, at least `most` if there are as many.
+    fn softest_motions(
+        &self,
+        factors: &mut Factors,
+        found: &State<f64>,
+        most: usize,
     ) -> Result<Vec<(f64, Vec<f64>)>, AssemblyFailure> {
         let layout = self.layout;
         let n = layout.numbering.unknowns();
@@ -283,7 +300,7 @@ impl Solver<'_> {
         };
         // 1 / (λ + σ) is negative, or about 1 / σ and more, where λ is not positive.
         let counts = |value: f64, _: f64| value < 0.0 || value * shift > 0.5;
-        let soft = ritz_vectors(softened, weighted, (n, allowed), counts)
+        let soft = ritz_vectors(softened, weighted, (n, allowed.min(most)), counts)
             .ok_or(AssemblyFailure::Singular)?;
         let along = layout.along(self.model, self.given, found);
         let stiffness = |(_, y): (f64, Vec<f64>)| {

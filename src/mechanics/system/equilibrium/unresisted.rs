@@ -19,18 +19,28 @@ const ITERATIONS: usize = 5;
 const ZERO: f64 = 1e-8;
 /// What is left of a vector along others is round-off below this part.
 const DEPENDENT: f64 = 1e-9;
+/// A stiffness above this number of times its round-off is none.
+const FIRM: f64 = 1e4;
 
-/// The motions with a stiffness below `free` in `matrices`, which has that at speed zero and some of the inertia, and none by
-/// N, of which `by_speed` are the entries; with their products with the inertia. The joints allow `allowed` independent motions.
+/// What has little stiffness at speed zero.
+pub(super) struct Unresisted {
+    /// The motions that nothing resists at any speed, with their products with the inertia.
+    pub motions: Vec<[Vec<f64>; 2]>,
+    /// The least stiffness below the limit, by the inertia, that is no round-off.
+    pub softest: Option<f64>,
+}
+
+/// The motions with a stiffness below `free` in `matrices`, which has that at speed zero and `least` of the inertia, and none by
+/// N, of which `by_speed` are the entries. The joints allow `allowed` independent motions.
 ///
 /// # Errors
 /// Singular equations.
 pub(super) fn unresisted(
     matrices: &Matrices,
     by_speed: &[f64],
-    (rate, free): (f64, f64),
+    (rate, free, least): (f64, f64, f64),
     allowed: usize,
-) -> Result<Vec<[Vec<f64>; 2]>, AssemblyFailure> {
+) -> Result<Unresisted, AssemblyFailure> {
     let n = matrices.unknowns;
     let factors = |s: f64| matrices.factors(s).map_err(|_| AssemblyFailure::Singular);
     let padded = |y: &[f64]| {
@@ -82,8 +92,20 @@ pub(super) fn unresisted(
     let ritz = DMatrix::from_fn(count, count, |i, j| dot(&space[i], &products[j]));
     space = rotated(space, ritz, free);
     if space.is_empty() {
-        return Ok(Vec::new());
+        return Ok(Unresisted {
+            motions: Vec::new(),
+            softest: None,
+        });
     }
+    let mut sizes = matrices.stiffness.clone();
+    sizes.values.iter_mut().for_each(|k| *k = k.abs());
+    let firm = space.iter().filter_map(|y| {
+        let size: Vec<f64> = y.iter().map(|y| y.abs()).collect();
+        let round_off = f64::EPSILON * dot(&sizes.multiply(&padded(&size))[..n], &size);
+        let stiffness = dot(&stiff(y), y) - least;
+        (stiffness > FIRM * round_off).then_some(stiffness)
+    });
+    let softest = firm.reduce(f64::min);
     let mut turned = matrices.mass.clone();
     turned.values = by_speed.to_vec();
     let mut firm = factors(rate.sqrt())?;
@@ -104,7 +126,10 @@ pub(super) fn unresisted(
         let m = heavy(&y);
         [y, m]
     };
-    Ok(space.into_iter().map(with_inertia).collect())
+    Ok(Unresisted {
+        motions: space.into_iter().map(with_inertia).collect(),
+        softest,
+    })
 }
 
 /// The combinations of vectors for the eigenvalues of a symmetric matrix below a limit.

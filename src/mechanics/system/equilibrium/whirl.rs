@@ -80,7 +80,7 @@ pub fn modes_of_machine(
         };
         let spectrum = solver.spectrum(found, &wanted, (true, false))?;
         Ok(MachineModes {
-            growth: solver.growth_in_rotation(found, &spectrum)?,
+            growth: solver.fastest_growth(found, &spectrum)?,
             modes: solver.machine_modes(found, &spectrum),
         })
     })
