@@ -138,7 +138,7 @@ def minimise(
     """
     start = _start(x0)
     lower, upper = _bounds(bounds, start.size)
-    settings = {"scale_variables": True, **checked_options(options, method, tol)}
+    settings = checked_options(options, method, tol)
     relative_step = settings.pop("finite_diff_rel_step", None)
     shown = bool(settings.pop("disp", False))
     for name, given in (("hess", hess), ("hessp", hessp)):
@@ -558,7 +558,7 @@ def _linear(label: str, item: Any, frame: _Frame) -> _Constraint:
 
 
 def checked_options(options: Mapping[str, Any] | None, method: Any = None, tol: Any = None) -> dict[str, Any]:
-    """The options under their names here, without those that are `None`."""
+    """The options under their names here, without those that are `None`; variables are scaled by default."""
     if options is None:
         options = {}
     if not isinstance(options, Mapping):
@@ -579,6 +579,7 @@ def checked_options(options: Mapping[str, Any] | None, method: Any = None, tol: 
         raise ValueError(f"method: expected one of {known}, found {settings['method']!r}")
     if tol is not None:
         settings.setdefault("tolerance", _checked_option("tol", "tolerance", tol))
+    settings.setdefault("scale_variables", True)
     return settings
 
 

@@ -8,6 +8,7 @@ use super::pattern::Pattern;
 use super::scaling::size;
 use super::sparse_lu::PivotedLu;
 use crate::math::Complex64;
+use crate::math::slices::any_vector;
 use std::mem::take;
 use std::sync::Arc;
 
@@ -20,6 +21,9 @@ pub const REFINED_SOLVES: usize = 1 + REFINEMENTS;
 /// square. Entries below [`NEGLIGIBLE`] of the largest one do not count.
 pub const LAST: f64 = 1e-7;
 const NEGLIGIBLE: f64 = 1e-12;
+
+/// Part of the sizes of its terms that an equation may leave, if the pivots are good ones.
+const SOUND: f64 = 1e-6;
 
 /// LU factors of a sparse matrix.
 pub struct SparseLu<S> {
@@ -120,6 +124,21 @@ impl<S: SolveScalar> SparseLu<S> {
     /// No matrix has been factorised.
     pub fn solve_transposed(&mut self, b: &mut [S]) {
         self.factors.solve(System::Transposed, &mut [b]);
+    }
+
+    /// Whether the factors of a matrix solve a system but for round-off, each equation relative to the sizes of its terms.
+    ///
+    /// # Panics
+    /// No matrix has been factorised.
+    pub fn solve_soundly(&mut self, matrix: &SparseMatrix<S>) -> bool {
+        let right = any_vector(matrix.pattern.order(), 1.7);
+        let mut x: Vec<S> = right.iter().map(|&x| S::from(x)).collect();
+        self.solve(&mut x);
+        let left = matrix.multiply(&x);
+        let sizes: Vec<f64> = x.into_iter().map(size).collect();
+        let terms = matrix.sizes().multiply(&sizes);
+        let mut rows = left.iter().zip(&right).zip(&terms);
+        rows.all(|((&l, &r), terms)| size(l - S::from(r)) <= SOUND * (terms + r.abs()))
     }
 
     /// Smallest absolute pivot of the scaled matrix in the columns from `first` on, and its column;

@@ -70,6 +70,15 @@ pub(super) fn size<S: Scalar>(x: S) -> f64 {
     x.re().abs() + x.infinitesimal().abs()
 }
 
+impl<S: Scalar> SparseMatrix<S> {
+    /// The sizes of all entries: with those of x, their product is the size of the terms of A x.
+    pub fn sizes(&self) -> SparseMatrix<f64> {
+        let mut out = SparseMatrix::new(self.pattern.clone());
+        out.values = self.values.iter().map(|&x| size(x)).collect();
+        out
+    }
+}
+
 /// The power of two that brings `largest` to [1/2, 1]; 1 if this is not needed or not possible.
 fn scale(largest: f64) -> f64 {
     if !(largest > 0.0 && largest.is_finite()) {

@@ -175,6 +175,18 @@ impl Solver<'_> {
         Ok(growing.chain(spectrum.diverging).reduce(f64::max))
     }
 
+    /// What small motions are about: the solution, with controllers that run if they have states.
+    fn about<'a>(
+        &'a self,
+        released: &'a Option<Released<f64>>,
+        found: &'a State<f64>,
+    ) -> At<'a, f64> {
+        match released {
+            Some(own) => own.at(),
+            None => At::rest(self.layout, self.model, found, self.given.turning.as_ref()),
+        }
+    }
+
     /// The fastest growth of all motions, with their damping and running controllers; none if they are many, unless `however_many`.
     ///
     /// # Errors
@@ -185,10 +197,7 @@ impl Solver<'_> {
         however_many: bool,
     ) -> Result<Option<Option<f64>>, AssemblyFailure> {
         let released = Released::of((self.model, self.layout.numbering), found)?;
-        let at = match &released {
-            Some(own) => own.at(),
-            None => At::rest(self.layout, self.model, found, self.given.turning.as_ref()),
-        };
+        let at = self.about(&released, found);
         let allowed = at.freedom();
         if allowed == 0 || !however_many && 2 * allowed > WHOLE {
             return Ok(None);
@@ -237,10 +246,7 @@ impl Solver<'_> {
                 return none("it is not stable".into());
             }
         }
-        let at = match &released {
-            Some(own) => own.at(),
-            None => At::rest(self.layout, self.model, found, turning),
-        };
+        let at = self.about(&released, found);
         let matrices = Matrices::new(at, damped).with_strains(at, damped);
         let allowed = at.freedom();
         let (rate, least) = (found.rate.sqrt(), (FREE * found.rate).sqrt());

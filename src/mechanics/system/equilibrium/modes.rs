@@ -265,16 +265,34 @@ impl Solver<'_> {
         if self.stability(softened.factors, found)?.growth.is_some() {
             return none("it is not stable".into());
         }
+        let least = self.least_shift(found);
+        let mut shift = least;
+        let out = self.search_modes(&mut softened, found, wanted, &mut shift);
+        // Kept factors are the same as new ones.
+        if shift != least {
+            self.factorise_at(softened.factors, found)?;
+        }
+        out
+    }
+
+    /// The same by factors with σ = `shift`, which it moves.
+    fn search_modes(
+        &self,
+        softened: &mut Softened,
+        found: &State<f64>,
+        wanted: &WantedModes,
+        shift: &mut f64,
+    ) -> Result<Option<Vec<Mode>>, AssemblyFailure> {
+        let none = |why: String| Err(AssemblyFailure::NoModes { why });
         let mut free = Basis::default();
         for [mut y, _] in self.free_motions(softened.factors, found)? {
             free.orthogonalise(&mut y);
-            free.push(&softened, y, 0.0);
+            free.push(softened, y, 0.0);
         }
         // Beyond the motions that the joints allow there is round-off alone.
         let rows = self.layout.numbering.constraints() - self.layout.left_out.numbers().count();
         let allowed = (softened.order().saturating_sub(rows)).saturating_sub(free.len());
         let mut count = wanted.least();
-        let mut shift = self.least_shift(found);
         let mut out = loop {
             let (mut space, mut all) = match allowed {
                 0 => (Vec::new(), true),
@@ -285,17 +303,14 @@ impl Solver<'_> {
             let there = space.len();
             if there < if all { wanted.count.max(1) } else { count } {
                 // Lanczos converges for symmetric matrices.
-                if !all && !self.is_symmetric(&mut softened, found) {
-                    self.restore_shift(&mut softened, found, shift)?;
+                if !all && !self.is_symmetric(softened, found) {
                     return Ok(None);
                 }
-                if !all && free.len() == 0 && shift > LEAST_SHIFT * self.least_shift(found) {
-                    shift *= LOWER;
-                    let made = (softened.factors).make(self.layout, self.model, (found, shift));
-                    made.map_err(|_| AssemblyFailure::Singular)?;
+                if !all && free.len() == 0 && *shift > LEAST_SHIFT * self.least_shift(found) {
+                    *shift *= LOWER;
+                    self.factorise_with(softened, found, *shift)?;
                     continue;
                 }
-                self.restore_shift(&mut softened, found, shift)?;
                 return none(match all {
                     true => format!(
                         "mode {} is asked for, and there are {there}",
@@ -304,35 +319,30 @@ impl Solver<'_> {
                     false => format!("only {there} modes converge"),
                 });
             }
-            let Some(mut modes) = self.ritz(&mut softened, found, space)? else {
-                self.restore_shift(&mut softened, found, shift)?;
+            let Some(mut modes) = self.ritz(softened, found, space)? else {
                 return Ok(None);
             };
             // A large σ hides what the space lacks.
             let highest = modes.last().map_or(0.0, |own| own.square);
             let lower = highest.max(LEAST_SHIFT * self.least_shift(found));
-            if free.len() == 0 && shift > LARGE_SHIFT * lower {
-                shift = lower;
-                let made = (softened.factors).make(self.layout, self.model, (found, shift));
-                made.map_err(|_| AssemblyFailure::Singular)?;
+            if free.len() == 0 && *shift > LARGE_SHIFT * lower {
+                *shift = lower;
+                self.factorise_with(softened, found, *shift)?;
                 continue;
             }
-            let Some(good) = self.refine(&mut softened, found, (&free, &mut modes)) else {
-                self.restore_shift(&mut softened, found, shift)?;
+            let Some(good) = self.refine(softened, found, (&free, &mut modes)) else {
                 return none(ROUND_OFF.into());
             };
             modes.truncate(count);
             // Solutions have round-off along free motions, which a small σ magnifies.
             let lowest = modes.first().map_or(0.0, |own| own.square);
-            if free.len() > 0 && shift < SMALL_SHIFT * FLOOR * lowest {
-                shift = FLOOR * lowest;
-                let made = (softened.factors).make(self.layout, self.model, (found, shift));
-                made.map_err(|_| AssemblyFailure::Singular)?;
+            if free.len() > 0 && *shift < SMALL_SHIFT * FLOOR * lowest {
+                *shift = FLOOR * lowest;
+                self.factorise_with(softened, found, *shift)?;
                 continue;
             }
             // σ M̃ hides modes of light bodies in large scenes. The search for damped ones is slower, and needs no M̃.
             if good < modes.len() {
-                self.restore_shift(&mut softened, found, shift)?;
                 return Ok(None);
             }
             if all || wanted.suffice(&modes) {
@@ -346,8 +356,7 @@ impl Solver<'_> {
             count = (2 * count).min(MOST_MODES);
         };
         let symmetric = (self.model.loads.iter()).all(|load| load.kind.has_potential())
-            || self.find_left(&mut softened, shift, (&free, &mut out));
-        self.restore_shift(&mut softened, found, shift)?;
+            || self.find_left(softened, *shift, (&free, &mut out));
         Ok(symmetric.then_some(out))
     }
 
@@ -378,17 +387,15 @@ impl Solver<'_> {
         })
     }
 
-    /// Makes the factors with the least σ again, if they are with another one. Kept ones are the same as new ones.
-    fn restore_shift(
+    /// Makes the factors with a σ.
+    fn factorise_with(
         &self,
         softened: &mut Softened,
         found: &State<f64>,
         shift: f64,
     ) -> Result<(), AssemblyFailure> {
-        match shift != self.least_shift(found) {
-            true => self.factorise_at(softened.factors, found),
-            false => Ok(()),
-        }
+        let made = (softened.factors).make(self.layout, self.model, (found, shift));
+        made.map_err(|_| AssemblyFailure::Singular)
     }
 
     /// Whether K is symmetric, by two motions of low frequencies.

@@ -12,7 +12,6 @@ use super::turning::{Frames, Steady, Turning, Weights};
 use crate::linalg::{
     Emit, KnownPivots, Pattern, SingularMatrix, SolveScalar, SparseLu, SparseMatrix,
 };
-use crate::math::slices::any_vector;
 use crate::math::{Complex64, Scalar};
 use crate::model::Model;
 use crate::system::bodies::BodyMotion;
@@ -25,9 +24,6 @@ use crate::system::loads::{self, LoadEntries};
 use crate::system::numbering::Numbering;
 use crate::system::reduce::{self, emit_reduced};
 use crate::system::redundant_rows::RedundantRows;
-
-/// Part of the sizes of its terms that an equation may leave, if pivots that are known beforehand are good ones.
-const SOUND: f64 = 1e-6;
 
 /// A model at a state, about which motions are small.
 #[derive(Clone, Copy)]
@@ -342,7 +338,7 @@ impl Matrices {
         let matrix = self.combined(s);
         if self.pattern.known_pivots().is_some() {
             let mut factors = SparseLu::new(&self.pattern);
-            if factors.factorise(&matrix).is_ok() && are_sound(&mut factors, &matrix) {
+            if factors.factorise(&matrix).is_ok() && factors.solve_soundly(&matrix) {
                 return Ok(factors);
             }
         }
@@ -351,26 +347,6 @@ impl Matrices {
         factors.factorise(&matrix)?;
         Ok(factors)
     }
-}
-
-/// Whether factors solve a system but for round-off, each equation relative to the sizes of its terms.
-fn are_sound<S: SolveScalar>(factors: &mut SparseLu<S>, matrix: &SparseMatrix<S>) -> bool {
-    let right = any_vector(matrix.pattern.order(), 1.7);
-    let mut x: Vec<S> = right.iter().map(|&x| S::from(x)).collect();
-    factors.solve(&mut x);
-    let left = matrix.multiply(&x);
-    let mut sizes = SparseMatrix::new(matrix.pattern.clone());
-    for (size, value) in sizes.values.iter_mut().zip(&matrix.values) {
-        *size = self::size(*value);
-    }
-    let terms = sizes.multiply(&x.iter().map(|&x| size(x)).collect::<Vec<f64>>());
-    let mut rows = left.iter().zip(&right).zip(&terms);
-    rows.all(|((&l, &r), terms)| size(l - S::from(r)) <= SOUND * (terms + r.abs()))
-}
-
-/// |Re x| + |Im x|.
-fn size<S: Scalar>(x: S) -> f64 {
-    x.re().abs() + x.infinitesimal().abs()
 }
 
 /// The entries a_ii.

@@ -97,8 +97,7 @@ pub(super) fn unresisted(
             softest: None,
         });
     }
-    let mut sizes = matrices.stiffness.clone();
-    sizes.values.iter_mut().for_each(|k| *k = k.abs());
+    let sizes = matrices.stiffness.sizes();
     let firm = space.iter().filter_map(|y| {
         let size: Vec<f64> = y.iter().map(|y| y.abs()).collect();
         let round_off = f64::EPSILON * dot(&sizes.multiply(&padded(&size))[..n], &size);
