@@ -9,6 +9,7 @@ mod far_starts;
 mod faults;
 mod feasibility;
 mod filter;
+mod fixed_by_rows;
 mod gives_up;
 mod hard_cases;
 mod hock_schittkowski;

@@ -101,18 +101,6 @@ impl LineSearch<'_> {
         let longest = direction
             .primal_limit(self.at, self.layout, self.tau)
             .min(cap);
-        let stationary = here.theta == 0.0 && self.at.slopes.g.amax() == 0.0;
-        if stationary && direction.size() <= RESOLUTION {
-            // Only the multipliers move.
-            return Ok(Some(Accepted {
-                point: self.at.point.clone(),
-                slopes: self.at.slopes.clone(),
-                s: self.at.s.clone(),
-                alpha: longest,
-                direction,
-                trials: 1,
-            }));
-        }
         let least = self.least_step(&here);
         let mut first = None;
         let mut alpha = longest;
@@ -136,7 +124,10 @@ impl LineSearch<'_> {
                 }));
             }
             if !goes_on {
-                return Ok(None);
+                let stays = trials == 0 && here.theta == 0.0;
+                return Ok(stays
+                    .then(|| self.multipliers_alone(direction, longest))
+                    .flatten());
             }
             trials += 1;
             let lengths = (alpha, alpha);
@@ -222,6 +213,33 @@ impl LineSearch<'_> {
             Err(EarlyExit::Failed(_)) => return Ok(None),
             Err(halt) => return Err(halt),
         };
+        let gains = self.gains((&point, &slopes, &s), direction, alpha);
+        Ok(gains.then_some((point, slopes, s)))
+    }
+
+    /// A step of the multipliers alone, at a point that rows fix to rounding, if it reduces the residual of the
+    /// optimality conditions.
+    fn multipliers_alone(&self, direction: Direction, alpha: f64) -> Option<Accepted> {
+        let (point, slopes, s) = (&self.at.point, &self.at.slopes, &self.at.s);
+        let gains = self.gains((point, slopes, s), &direction, alpha);
+        gains.then(|| Accepted {
+            point: point.clone(),
+            slopes: slopes.clone(),
+            s: s.clone(),
+            alpha,
+            direction,
+            trials: 1,
+        })
+    }
+
+    /// Whether the residual of the optimality conditions falls if `point` and the slacks `s` are taken with the
+    /// multipliers that `direction` leads to.
+    fn gains(
+        &self,
+        (point, slopes, s): (&Point, &Derivatives, &DVector<f64>),
+        direction: &Direction,
+        alpha: f64,
+    ) -> bool {
         let dual = direction.dual_limit(self.at, self.tau);
         let mut moved = Iterate {
             point: point.clone(),
@@ -231,10 +249,9 @@ impl LineSearch<'_> {
             zl: &self.at.zl + &direction.zl * dual,
             zu: &self.at.zu + &direction.zu * dual,
         };
+        moved.keep_multipliers_in_band(self.layout, self.mu);
         moved.estimate_multipliers(self.layout);
-        let before = self.at.residual(self.layout, self.mu);
-        let after = moved.residual(self.layout, self.mu);
-        Ok((after <= GAIN * before).then_some((point, slopes, s)))
+        moved.residual(self.layout, self.mu) < GAIN * self.at.residual(self.layout, self.mu)
     }
 
     /// Step length below which no variable changes.
