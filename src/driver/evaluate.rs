@@ -14,8 +14,8 @@ use crate::integrate::{
 use crate::math::scalar::COMPLEX_STEP;
 use crate::math::soft_max::Smoothed;
 use crate::math::{Complex64, Dual, Parameters, Team};
+use crate::model::RigidBody;
 use crate::model::flexible::FlexibleBody;
-use crate::model::{JointFrame, RigidBody};
 use crate::problem::{Composition, EndCotangent, Focus, Partials, Problem};
 use crate::system::equilibrium::FrozenMode;
 use crate::system::flexible;
@@ -367,10 +367,10 @@ impl Evaluated {
         let of_ends = adjoint.gradients[count - ends.len()..].iter_mut();
         for (gradient, end) in of_ends.zip(ends) {
             gradient.duration += end.duration;
-            for (joint, by) in &end.frames {
+            for (joint, [by_a, by_b]) in &end.frames {
                 let own = &mut gradient.model.joints[*joint];
-                own.frame_a.length += by.length;
-                own.frame_b.add(&JointFrame { length: 0.0, ..*by });
+                own.frame_a.add(by_a);
+                own.frame_b.add(by_b);
             }
         }
         let mut of_event: Option<Vec<Scene<f64>>> = None;

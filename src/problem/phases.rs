@@ -5,11 +5,13 @@
 //!
 //! ```text
 //! for each body          position, orientation, velocity, angular velocity                 13 numbers
-//! for each joint that    its frame on body B and the length of a rod                       13 numbers
-//!   closed before
+//! for each joint that    the point and the turn R of its frame on body B, and the length   13 numbers
+//!   closed before        of a rod
 //! for each angle         the angle at which counting goes on                                1 number
 //! time                   of the begin of the phase                                          1 number
 //! ```
+//!
+//! The axes b_k of a frame on body B are R a_k, of the a_k on body A: R = Σ b_k a_kᵀ is the same if a reduction has turned both frames.
 //!
 //! The consistent start of the scene then gives the jump of the velocities by the joints that close:
 //! M (v⁺ − v⁻) + Gᵀ σ = 0, G v⁺ + Φ_t = 0 (`system/initial.rs`). Without joints that close v⁺ = v⁻.
@@ -19,7 +21,7 @@ use crate::adjoint::WeightedEnd;
 use crate::functions::turning::{Rotation, turns};
 use crate::functions::{Function, Scene};
 use crate::integrate::Trajectory;
-use crate::math::{Parameters, Scalar, Vec3};
+use crate::math::{Mat3, Parameters, Scalar, Vec3};
 use crate::model::{JointFrame, JointKind, Model};
 use crate::schema::Document;
 use crate::system::redundancy;
@@ -32,8 +34,8 @@ const OF_FRAME: usize = 13;
 pub struct EndCotangent {
     /// Of the last state of the motion.
     pub end: WeightedEnd,
-    /// Of frames of joints, by the number of the joint.
-    pub frames: Vec<(usize, JointFrame<f64>)>,
+    /// Of the frames of joints on their bodies A and B, by the number of the joint.
+    pub frames: Vec<(usize, [JointFrame<f64>; 2])>,
     /// Of the duration, and of the time of the begin.
     pub duration: f64,
 }
@@ -89,9 +91,8 @@ pub(super) fn begin<S: Scalar>(document: &Document, scene: &mut Scene<S>, state:
                     model.close(j);
                 } else {
                     own.frame_b.point = Vec3::from_fn(|_, _| next());
-                    for axis in &mut own.frame_b.axes {
-                        *axis = Vec3::from_fn(|_, _| next());
-                    }
+                    let turn = Mat3::from_columns(&[(); 3].map(|()| Vec3::from_fn(|_, _| next())));
+                    own.frame_b.axes = own.frame_a.axes.map(|axis| turn * axis);
                     own.frame_a.length = next();
                 }
             }
@@ -220,7 +221,9 @@ impl Problem {
         for joint in self.kept_closed() {
             let own = &scene.model.joints[joint];
             state.extend(own.frame_b.point.iter());
-            state.extend(own.frame_b.axes.iter().flat_map(|axis| axis.iter()));
+            let axes = own.frame_a.axes.iter().zip(&own.frame_b.axes);
+            let turn: Mat3<S> = axes.map(|(a, b)| b * a.transpose()).sum();
+            state.extend(turn.iter());
             state.push(own.frame_a.length);
         }
         for instant in scene.functions.iter().flat_map(Function::instants) {
@@ -236,7 +239,12 @@ impl Problem {
     }
 
     /// Cotangents of what [`Problem::state_after`] takes, from those of the state, `by`.
-    pub fn pull_state(&self, run: &Trajectory<f64>, by: &[f64]) -> EndCotangent {
+    pub fn pull_state(
+        &self,
+        scene: &Scene<f64>,
+        run: &Trajectory<f64>,
+        by: &[f64],
+    ) -> EndCotangent {
         let numbering = &run.numbering;
         let mut end = WeightedEnd {
             q: vec![0.0; numbering.positions()],
@@ -250,13 +258,14 @@ impl Problem {
         let of_frames = by[OF_BODY * bodies..].chunks_exact(OF_FRAME);
         let frames = self.kept_closed().into_iter().zip(of_frames);
         let frames = frames.map(|(joint, by)| {
-            let mut frame = JointFrame::zero();
-            frame.point = Vec3::from_column_slice(&by[..3]);
-            for (k, axis) in frame.axes.iter_mut().enumerate() {
-                *axis = Vec3::from_column_slice(&by[3 + 3 * k..][..3]);
-            }
-            frame.length = by[12];
-            (joint, frame)
+            let own = &scene.model.joints[joint];
+            let [mut a, mut b] = [JointFrame::zero(); 2];
+            b.point = Vec3::from_column_slice(&by[..3]);
+            let turn = Mat3::from_column_slice(&by[3..12]);
+            b.axes = own.frame_a.axes.map(|axis| turn * axis);
+            a.axes = own.frame_b.axes.map(|axis| turn.tr_mul(&axis));
+            a.length = by[12];
+            (joint, [a, b])
         });
         EndCotangent {
             end,

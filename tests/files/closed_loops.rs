@@ -89,3 +89,17 @@ fn what_a_controller_pushes_away_is_not_neutral() {
         "{notes:?}"
     );
 }
+
+/// s² = 1 grows by 1/s, near which rates are sought; s² + s + 100 = 0 has the damping ratio 1/20.
+#[test]
+fn a_growth_at_the_shift_of_the_search_hides_nothing() {
+    let controllers = [
+        json!({"proportional": -1, "derivative": 0}),
+        json!({"proportional": 100, "derivative": 1}),
+    ];
+    let mut file = slides("motion", &controllers);
+    file["simulation"] = json!({"duration": 0.1});
+    file["functions"] = json!({"z": {"final": {"damping_ratio": {"mode": 1}}}});
+    let found = values(&file)[0];
+    assert!((found - 0.05).abs() < 1e-9, "{found}");
+}

@@ -50,7 +50,8 @@ impl<S: Scalar> Emit<S> for Replay<'_, S> {
 /// Adds the entries, with their weights, to their slots.
 struct SharedReplay<'a, S> {
     starts: &'a [u32],
-    shares: &'a [(u32, f64)],
+    slots: &'a [u32],
+    weights: &'a [f64],
     next: usize,
     values: &'a mut [S],
 }
@@ -58,7 +59,7 @@ struct SharedReplay<'a, S> {
 impl<S: Scalar> Emit<S> for SharedReplay<'_, S> {
     fn add(&mut self, _: usize, _: usize, value: S) {
         let own = self.starts[self.next] as usize..self.starts[self.next + 1] as usize;
-        for &(slot, weight) in &self.shares[own] {
+        for (&slot, &weight) in self.slots[own.clone()].iter().zip(&self.weights[own]) {
             self.values[slot as usize] += value * weight;
         }
         self.next += 1;
@@ -84,10 +85,15 @@ impl<S: Scalar> SparseMatrix<S> {
                 assemble(&mut replay);
                 replay.slots.next().is_none()
             }
-            Record::Shared { starts, shares } => {
+            Record::Shared {
+                starts,
+                slots,
+                weights,
+            } => {
                 let mut replay = SharedReplay {
                     starts,
-                    shares,
+                    slots,
+                    weights,
                     next: 0,
                     values,
                 };

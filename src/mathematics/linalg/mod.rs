@@ -14,6 +14,7 @@ mod matrix;
 mod multifrontal;
 mod owners;
 pub mod pattern;
+mod places;
 mod plans;
 mod replay;
 mod scaling;

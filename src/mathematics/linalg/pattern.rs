@@ -4,6 +4,7 @@
 //! The first pass records the place of each entry. Later passes replay the record, so an entry
 //! costs one indexed addition. Entries at the same place are summed.
 
+use super::places::Places;
 use crate::math::{Mat3, Scalar, Team, Vec3};
 use std::sync::Arc;
 
@@ -59,8 +60,7 @@ pub(super) const NONE: u32 = u32::MAX;
 /// Positions of the non-zeros of a square matrix in compressed columns.
 #[derive(Clone, Debug)]
 pub struct Pattern {
-    column_starts: Vec<usize>,
-    rows: Vec<usize>,
+    pub(super) places: Arc<Places>,
     pub(super) record: Record,
     /// Pivots that are known before the values.
     known_pivots: Option<Arc<KnownPivots>>,
@@ -82,11 +82,12 @@ pub struct KnownPivots {
 #[derive(Clone, Debug)]
 pub(super) enum Record {
     /// One slot per entry, or [`NONE`].
-    Whole(Vec<u32>),
+    Whole(Arc<[u32]>),
     /// Entry k goes to the slots from `starts[k]` to `starts[k + 1]`, each with a weight.
     Shared {
         starts: Vec<u32>,
-        shares: Vec<(u32, f64)>,
+        slots: Arc<[u32]>,
+        weights: Vec<f64>,
     },
 }
 
@@ -133,14 +134,36 @@ impl Shares {
     }
 }
 
+impl Record {
+    /// The record of a reduced assembly whose places have these slots.
+    fn of_shares(all: Shares, slots: Arc<[u32]>) -> Self {
+        let Shares {
+            starts, weights, ..
+        } = all;
+        // An entry that stays as it is, or is left out, needs no weight.
+        let single = starts.windows(2).all(|own| own[1] - own[0] <= 1);
+        if !(single && weights.iter().all(|&weight| weight == 1.0)) {
+            return Self::Shared {
+                starts,
+                slots,
+                weights,
+            };
+        }
+        let own = starts.windows(2).map(|own| match own[1] > own[0] {
+            true => slots[own[0] as usize],
+            false => NONE,
+        });
+        Self::Whole(own.collect())
+    }
+}
+
 impl Pattern {
     /// Records the pattern of order `n` of an assembly.
     pub fn record<S: Scalar>(n: usize, assemble: impl FnOnce(&mut dyn Emit<S>)) -> Self {
         let mut recorder = Recorder(Vec::new());
         assemble(&mut recorder);
-        let mut pattern = Self::of(n, &recorder.0);
-        pattern.record_places(&recorder.0);
-        pattern
+        let (places, slots) = Places::record(n, &recorder.0);
+        Self::new(places, Record::Whole(slots))
     }
 
     /// Records the pattern of order `n` of Bᵀ A B for an assembly of A. `shares` gives a row of B:
@@ -151,18 +174,15 @@ impl Pattern {
         assemble: impl FnOnce(&mut dyn Emit<S>),
     ) -> Self {
         let all = Shares::of(shares, assemble);
-        let mut pattern = Self::of(n, &all.places);
-        pattern.record_shares(all);
-        pattern
+        let (places, slots) = Places::record(n, &all.places);
+        Self::new(places, Record::of_shares(all, slots))
     }
 
     /// The same pattern for another assembly, of some of its entries.
     pub fn for_assembly<S: Scalar>(&self, assemble: impl FnOnce(&mut dyn Emit<S>)) -> Self {
         let mut recorder = Recorder(Vec::new());
         assemble(&mut recorder);
-        let mut pattern = self.clone();
-        pattern.record_places(&recorder.0);
-        pattern
+        self.with_record(Record::Whole(self.places.slots_of(&recorder.0)))
     }
 
     /// As [`Pattern::for_assembly`], reduced.
@@ -171,84 +191,25 @@ impl Pattern {
         shares: impl Fn(usize) -> [(usize, f64); 2],
         assemble: impl FnOnce(&mut dyn Emit<S>),
     ) -> Self {
-        let mut pattern = self.clone();
-        pattern.record_shares(Shares::of(shares, assemble));
-        pattern
+        let all = Shares::of(shares, assemble);
+        let slots = self.places.slots_of(&all.places);
+        self.with_record(Record::of_shares(all, slots))
     }
 
-    fn record_places(&mut self, places: &[[u32; 2]]) {
-        let slots = places.iter().map(|place| self.slot(place));
-        self.record = Record::Whole(slots.collect());
-    }
-
-    fn record_shares(&mut self, all: Shares) {
-        let Shares {
-            starts,
-            places,
-            weights,
-        } = all;
-        let slots = places.iter().map(|place| self.slot(place));
-        // An entry that stays as it is, or is left out, needs no weight.
-        let single = starts.windows(2).all(|own| own[1] - own[0] <= 1);
-        self.record = if single && weights.iter().all(|&weight| weight == 1.0) {
-            let mut slots = slots;
-            let own = starts.windows(2).map(|own| match own[1] > own[0] {
-                true => slots.next().unwrap_or(NONE),
-                false => NONE,
-            });
-            Record::Whole(own.collect())
-        } else {
-            let shares = slots.zip(weights).collect();
-            Record::Shared { starts, shares }
-        };
-    }
-
-    /// The pattern of order `n` of places (column, row), without a record.
-    fn of(n: usize, places: &[[u32; 2]]) -> Self {
-        // Sorted by columns, then within each column.
-        let mut starts = vec![0; n + 1];
-        for &[column, _] in places {
-            starts[column as usize + 1] += 1;
-        }
-        for j in 0..n {
-            starts[j + 1] += starts[j];
-        }
-        let (mut next, mut sorted) = (starts.clone(), vec![0_u32; places.len()]);
-        for &[column, row] in places {
-            let at = &mut next[column as usize];
-            sorted[*at] = row;
-            *at += 1;
-        }
-        let (mut column_starts, mut rows) = (vec![0], Vec::new());
-        for j in 0..n {
-            let own = &mut sorted[starts[j]..starts[j + 1]];
-            own.sort_unstable();
-            let mut last = None;
-            for &row in &*own {
-                if last.replace(row) != Some(row) {
-                    rows.push(row as usize);
-                }
-            }
-            column_starts.push(rows.len());
-        }
-        rows.shrink_to_fit();
+    fn new(places: Arc<Places>, record: Record) -> Self {
         Self {
-            column_starts,
-            rows,
-            record: Record::Whole(Vec::new()),
+            places,
+            record,
             known_pivots: None,
             team: Team::default(),
         }
     }
 
-    /// Index of a place (column, row) of this pattern.
-    fn slot(&self, &[column, row]: &[u32; 2]) -> u32 {
-        let column = column as usize;
-        let start = self.column_starts[column];
-        let own = &self.rows[start..self.column_starts[column + 1]];
-        let found = own.binary_search(&(row as usize));
-        let slot = start + found.expect("every place was recorded");
-        u32::try_from(slot).expect("fewer than 2^32 entries")
+    fn with_record(&self, record: Record) -> Self {
+        Self {
+            record,
+            ..self.clone()
+        }
     }
 
     /// The pattern with pivots that are known before the values; none if there are none.
@@ -275,17 +236,17 @@ impl Pattern {
 
     /// Order of the matrix.
     pub fn order(&self) -> usize {
-        self.column_starts.len() - 1
+        self.places.order()
     }
 
     /// Number of stored entries.
     pub fn entries(&self) -> usize {
-        self.rows.len()
+        self.places.rows.len()
     }
 
     /// First entry of each column, and the number of entries; length order + 1.
     pub fn column_starts(&self) -> &[usize] {
-        &self.column_starts
+        &self.places.starts
     }
 
     /// Slots of the entries of `other`, a part of this pattern.
@@ -293,12 +254,13 @@ impl Pattern {
     /// # Panics
     /// An entry of `other` is not in this pattern.
     pub fn slots_of(&self, other: &Self) -> Vec<usize> {
+        let [own, part] = [&*self.places, &*other.places];
         let mut slots = Vec::with_capacity(other.entries());
         for j in 0..other.order() {
-            let own = self.column_starts[j]..self.column_starts[j + 1];
-            for row in &other.rows[other.column_starts[j]..other.column_starts[j + 1]] {
-                let at = self.rows[own.clone()].binary_search(row);
-                slots.push(own.start + at.expect("the other pattern is a part of this"));
+            let column = own.starts[j]..own.starts[j + 1];
+            for row in &part.rows[part.starts[j]..part.starts[j + 1]] {
+                let at = own.rows[column.clone()].binary_search(row);
+                slots.push(column.start + at.expect("the other pattern is a part of this"));
             }
         }
         slots
@@ -306,6 +268,6 @@ impl Pattern {
 
     /// Row of each entry.
     pub fn rows(&self) -> &[usize] {
-        &self.rows
+        &self.places.rows
     }
 }

@@ -3,15 +3,15 @@
 
 use super::fronts::Plan;
 use super::pattern::{KnownPivots, Pattern};
+use super::places::Places;
 use std::sync::{Arc, Mutex, PoisonError};
 
-/// Largest number of entries of all patterns whose plans are kept.
-const ENTRIES: usize = 1 << 22;
+/// Largest number of entries of all patterns whose plans are kept. Factors take far more memory than their plan.
+const ENTRIES: usize = 1 << 26;
 
 /// A pattern with its plan.
 struct Planned {
-    starts: Vec<usize>,
-    rows: Vec<usize>,
+    places: Arc<Places>,
     pivots: KnownPivots,
     plan: Arc<Plan>,
 }
@@ -21,9 +21,8 @@ static PLANNED: Mutex<Vec<Planned>> = Mutex::new(Vec::new());
 
 impl Planned {
     fn is_of(&self, pattern: &Pattern, pivots: &KnownPivots) -> bool {
-        self.starts == pattern.column_starts()
-            && self.rows == pattern.rows()
-            && self.pivots == *pivots
+        let same = Arc::ptr_eq(&self.places, &pattern.places);
+        (same || self.places == pattern.places) && self.pivots == *pivots
     }
 }
 
@@ -37,12 +36,11 @@ pub(super) fn plan(pattern: &Pattern, pivots: &KnownPivots) -> Arc<Plan> {
     if pattern.entries() <= ENTRIES && find(pattern, pivots).is_none() {
         let mut all = PLANNED.lock().unwrap_or_else(PoisonError::into_inner);
         all.push(Planned {
-            starts: pattern.column_starts().to_vec(),
-            rows: pattern.rows().to_vec(),
+            places: pattern.places.clone(),
             pivots: pivots.clone(),
             plan: plan.clone(),
         });
-        let count = |all: &[Planned]| all.iter().map(|own| own.rows.len()).sum::<usize>();
+        let count = |all: &[Planned]| all.iter().map(|own| own.places.rows.len()).sum::<usize>();
         while count(&all) > ENTRIES {
             all.remove(0);
         }

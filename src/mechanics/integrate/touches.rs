@@ -144,6 +144,22 @@ impl Touches {
         all.min_by(|a, b| a.part.total_cmp(&b.part))
     }
 
+    /// Whether the force of a contact begins, sets in or lets go between the start of a step and the positions `motions` at
+    /// `time`. Not known of scenes with many contacts, where none decides alone.
+    pub fn change<S: Scalar>(
+        &self,
+        model: &Model<S>,
+        (motions, time): (&[BodyMotion<S>], f64),
+    ) -> bool {
+        if self.before.gaps.is_empty() {
+            return false;
+        }
+        let mut now = Vec::new();
+        gaps(model, (motions, time), 0..model.loads.len(), &mut now);
+        let mut pairs = self.before.gaps.iter().zip(&now);
+        pairs.any(|(before, now)| before.phase() != now.phase())
+    }
+
     /// The contact that comes first of those which a step of size h to the state (q, v, v̇) passes over.
     pub fn missed<S: Scalar>(
         &mut self,

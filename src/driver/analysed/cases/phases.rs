@@ -219,7 +219,7 @@ pub(super) fn derivatives(
                 1.0
             };
             let moving = next.filter(|_| state.iter().any(|by| *by != 0.0));
-            Some(moving?.problem.pull_state(&at.run, &state))
+            Some(moving?.problem.pull_state(&at.scene, &at.run, &state))
         };
         let ends: Vec<Option<EndCotangent>> = sums.iter_mut().map(pulled).collect();
         let known: Vec<&EndCotangent> = ends.iter().flatten().collect();

@@ -152,11 +152,16 @@ pub fn march<S: SolveScalar>(
         let tried = stepper
             .stages(from.view(), (start, h))
             .map(|()| {
-                let error = error(&mut stepper, &scale, from.view(), h);
-                match touches.is_some() {
-                    true => error.max(unweighted(&mut stepper, &scale, from.view(), h)),
-                    false => error,
-                }
+                let [smooth, kinked] = errors(&mut stepper, &scale, from.view(), h);
+                let Some(touches) = &touches else {
+                    return smooth;
+                };
+                let last_stage = (&stepper.field.motions[..], (start + h).re());
+                let error = match !given && kinked > smooth && touches.change(model, last_stage) {
+                    true => kinked,
+                    false => smooth,
+                };
+                error.max(unweighted(&mut stepper, &scale, from.view(), h))
             })
             .and_then(|error| {
                 // The tolerance judges steps that may be replaced by others.
@@ -360,16 +365,21 @@ fn open<S: SolveScalar>(
 }
 
 /// Estimated error of a step relative to the scene's scale (Hairer, Nørsett & Wanner 1993,
-/// eq. II.10.17): |e5|² / √(|e5|² + 0.01 |e3|²).
-fn error<S: SolveScalar>(stepper: &mut Stepper<S>, scale: &Scale, from: NodeView<S>, h: S) -> f64 {
+/// eq. II.10.17): |e5|² / √(|e5|² + 0.01 |e3|²), and that of a step in which a force sets in or lets go: √(|e5|² + 0.01 |e3|²).
+/// There e3 is not larger than e5 by an order of h², and the first vanishes by chance where e5 does.
+fn errors<S: SolveScalar>(
+    stepper: &mut Stepper<S>,
+    scale: &Scale,
+    from: NodeView<S>,
+    h: S,
+) -> [f64; 2] {
     let numbering = stepper.field.numbering;
     let speeds = scale.speeds(numbering, from.v, &stepper.data.v_raw);
     let [e5, e3] = stepper.errors(h, |q, v| scale.square(numbering, q, v, &speeds));
-    let denominator = e5 + 0.01 * e3;
-    if denominator == 0.0 {
-        0.0
-    } else {
-        e5 / denominator.sqrt()
+    let both = (e5 + 0.01 * e3).sqrt();
+    match both == 0.0 {
+        true => [0.0, 0.0],
+        false => [e5 / both, both],
     }
 }
 

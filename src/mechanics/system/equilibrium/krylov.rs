@@ -33,6 +33,8 @@ const FREE: f64 = 1e-5;
 /// Most searches by a shift of the vibrations found before; and the part of their reach below which another one follows.
 const SEARCHES: usize = 4;
 const NEARER: f64 = 0.1;
+/// A search that fails is repeated by σ times this: an eigenvalue at σ leaves no factors.
+const ASIDE: f64 = 1.3;
 /// Part of |s| by which a vibration may grow by round-off.
 pub(super) const GROWS: f64 = 1e-6;
 
@@ -211,7 +213,11 @@ pub(super) fn lowest(
         let sizes = found.values.iter().take(count).map(|s| s.norm());
         sizes.fold(0.0, f64::max)
     };
-    let mut found = search(matrices, (shift, &sizes), (count, allowed))?;
+    let search = |shift: f64, sizes: &Range<f64>| {
+        let by = |shift: f64| search(matrices, (shift, sizes), (count, allowed));
+        by(shift).or_else(|_| by(ASIDE * shift))
+    };
+    let mut found = search(shift, &sizes)?;
     let mut before = f64::INFINITY;
     // A shift that is far from the vibrations leaves round-off in them, and a far too large reach leaves out low ones.
     for _ in 0..SEARCHES {
@@ -222,7 +228,7 @@ pub(super) fn lowest(
         // Free motions have s = 0 twice, which round-off divides by much where σ is too small for the stiffness.
         let counted = sizes.start.max(FREE * now)..sizes.end;
         let nearer = (PART * now).max(shift);
-        found = search(matrices, (nearer, &counted), (count, allowed))?;
+        found = search(nearer, &counted)?;
         before = now;
     }
     Ok(found)
@@ -277,9 +283,12 @@ pub(super) fn growing(
     (shift, least): (f64, f64),
     allowed: usize,
 ) -> Result<Vec<Complex64>, AssemblyFailure> {
-    let mut space = Space::new(matrices, shift, allowed)?;
-    space.grow((2 * allowed).min(LARGEST));
-    let mut all = space.rates().ok_or(AssemblyFailure::Singular)?;
+    let rates = |shift: f64| {
+        let mut space = Space::new(matrices, shift, allowed)?;
+        space.grow((2 * allowed).min(LARGEST));
+        space.rates().ok_or(AssemblyFailure::Singular)
+    };
+    let mut all = rates(shift).or_else(|_| rates(ASIDE * shift))?;
     all.retain(|s| s.norm() > least && s.im >= 0.0 && s.re > GROWS * s.norm());
     all.sort_by(|a, b| a.norm().total_cmp(&b.norm()));
     Ok(all)

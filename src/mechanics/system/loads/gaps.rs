@@ -23,6 +23,29 @@ pub struct Gap {
 /// Part of the width of an onset before the limit at which the force is felt: 0.7 % of the force at the limit.
 const FELT: f64 = 0.25;
 
+/// Where a gap is in the onset of its force, which is smooth within each.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Phase {
+    /// There is no force.
+    Apart,
+    /// Within the width of the onset.
+    Onset,
+    /// Behind it.
+    Pressed,
+}
+
+impl Gap {
+    /// Where the gap is in the onset.
+    pub fn phase(&self) -> Phase {
+        let half = -0.5 * self.onset / FELT;
+        match self.penetration {
+            depth if depth <= -half => Phase::Apart,
+            depth if depth < half => Phase::Onset,
+            _ => Phase::Pressed,
+        }
+    }
+}
+
 /// Whether a load presses only behind a limit.
 pub fn may_touch<S>(kind: &LoadKind<S>) -> bool {
     stop::of(kind).is_some() || matches!(kind, LoadKind::Contact(_) | LoadKind::Cable(_))
