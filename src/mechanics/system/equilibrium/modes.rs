@@ -262,8 +262,12 @@ impl Solver<'_> {
             motions: &motions,
             factors,
         };
-        if self.stability(softened.factors, found)?.growth.is_some() {
+        let stability = self.stability(softened.factors, found)?;
+        if stability.growth.is_some() {
             return none("it is not stable".into());
+        }
+        if stability.hides_bending {
+            return none(ROUND_OFF.into());
         }
         let least = self.least_shift(found);
         let mut shift = least;

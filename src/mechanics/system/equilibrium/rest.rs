@@ -15,11 +15,14 @@ use crate::math::slices::{add_scaled, dot};
 use crate::model::{Model, Role};
 use crate::system::bodies::BodyMotion;
 use crate::system::failure::AssemblyFailure;
+use crate::system::flexible;
 
 /// The smallest σ of factors, relative to the rate of the placement.
 pub(super) const FLOOR: f64 = 1e-6;
 /// A motion with a smaller stiffness, relative to the rate, is free.
 pub(super) const FREE: f64 = 1e-10;
+/// A motion deforms bodies if elastic coordinates have this part of the inertia of it.
+const DEFORMS: f64 = 1e-2;
 /// Round-off of a stiffness, relative to the largest.
 const NOISE: f64 = 1e-12;
 /// The largest rate of a machine that nothing loads, relative to that.
@@ -50,6 +53,9 @@ pub struct Stability {
     pub free: Vec<String>,
     /// Whether the way from the placement led through positions that are not stable, as of an arch that snaps through.
     pub snapped: bool,
+    /// Whether round-off hides motions that are not free: the bending of plates that are very thin has as little of the stiffness of
+    /// their stretch.
+    pub hides_bending: bool,
 }
 
 /// The stability of rest of `model`, whose bodies are placed and undeformed.
@@ -181,7 +187,10 @@ impl Solver<'_> {
                 let rate = (-stiffness).sqrt();
                 out.growth = Some(out.growth.map_or(rate, |other| other.max(rate)));
             } else if stiffness <= FREE * found.rate {
-                self.name_moving(&y, &mut out.free);
+                match self.deforms_shells(found, &y) {
+                    true => out.hides_bending = true,
+                    false => self.name_moving(&y, &mut out.free),
+                }
             }
         }
         Ok(out)
@@ -217,7 +226,7 @@ impl Solver<'_> {
         let motions = self.layout.at_rest(&found.q);
         let mut free: Vec<FreeMotion> = Vec::new();
         for (stiffness, y) in self.soft_motions(factors, found)? {
-            if stiffness.abs() > FREE * found.rate {
+            if stiffness.abs() > FREE * found.rate || self.deforms_shells(found, &y) {
                 continue;
             }
             let mut y = self.purified(factors, &motions, y);
@@ -230,6 +239,28 @@ impl Solver<'_> {
         }
         self.known.keep_free(&self.numbers, &free);
         Ok(free)
+    }
+
+    /// Whether a motion deforms bodies, in a machine with shells. A free motion does not.
+    fn deforms_shells(&self, found: &State<f64>, y: &[f64]) -> bool {
+        if !flexible::has_shells(self.model) {
+            return false;
+        }
+        let motions = self.layout.at_rest(&found.q);
+        let elastic = self.elastic_part(y.to_vec());
+        let heavy = self.layout.mass_product(self.model, &motions, &elastic);
+        dot(&heavy, &elastic) > DEFORMS * dot(&self.metric_product(&motions, y), y)
+    }
+
+    /// The part of a change of positions or velocities that is of elastic coordinates.
+    fn elastic_part(&self, y: Vec<f64>) -> Vec<f64> {
+        let mut y = self.layout.expanded(y);
+        for (body, six) in self.model.bodies.iter().zip(y.chunks_exact_mut(6)) {
+            if body.role != Role::Elastic {
+                six.fill(0.0);
+            }
+        }
+        self.layout.compressed(y)
     }
 
     /// A rate \[1/s²\] of a machine that nothing loads, of the size of its softest vibration; `None` if its loads of the rate
