@@ -86,13 +86,14 @@ impl CheckedDerivative {
 
     /// Whether the derivative is only the round-off of cancelling terms: both values are below 64 ε
     /// times the terms. Or they are below 1e-10 of these, and motions that differ by round-off change more than a hundredth
-    /// of the derivative, or the adjoint is zero, as of a motion that drives alone determine.
+    /// of the derivative, or the adjoint is zero on both motions, as of one that drives and welds determine.
     pub fn is_round_off(&self) -> bool {
         // Comparisons with NaN are false.
         let below = |most: f64| self.adjoint.abs() <= most && self.complex_step.abs() <= most;
         let moved = (self.in_use - self.adjoint).abs();
+        let nothing = self.adjoint == 0.0 && self.in_use == 0.0;
         below(self.round_off())
-            || below(NOTHING * self.terms) && (self.adjoint == 0.0 || below(moved / UNCERTAIN))
+            || below(NOTHING * self.terms) && (nothing || below(moved / UNCERTAIN))
     }
 
     /// Whether the derivative is below 1e-3 of its terms and its two values differ by at most their

@@ -11,7 +11,8 @@
 //! time                   of the begin of the phase                                          1 number
 //! ```
 //!
-//! The axes b_k of a frame on body B are R a_k, of the a_k on body A: R = Σ b_k a_kᵀ is the same if a reduction has turned both frames.
+//! The axes b_k of a frame on body B are R a_k, of the a_k on body A: R = Σ b_k a_kᵀ is the same if a reduction to a plane has
+//! turned both frames. Phases have no other one that changes frames.
 //!
 //! The consistent start of the scene then gives the jump of the velocities by the joints that close:
 //! M (v⁺ − v⁻) + Gᵀ σ = 0, G v⁺ + Φ_t = 0 (`system/initial.rs`). Without joints that close v⁺ = v⁻.

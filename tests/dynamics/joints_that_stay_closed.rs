@@ -1,5 +1,5 @@
 //! Joints that an event has closed and that stay closed through the next one, in a plane of any position: the reductions turn their
-//! axes and merge their bodies, and the motion goes on as if the second event were none.
+//! axes, and the motion goes on as if the second event were none.
 
 use super::phases::{simulated, whole};
 use crate::reference::documents::problem;

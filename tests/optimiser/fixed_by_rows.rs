@@ -10,7 +10,7 @@ const METHODS: [Method; 3] = [Method::InteriorPoint, Method::TrustRegion, Method
 fn one_variable_that_a_row_fixes() {
     for method in METHODS {
         for unit in [1e-3, 1.0, 1e3] {
-            for place in [0.3, -1.7, 2.9] {
+            for place in [0.3, 0.0, -1.7, 2.9] {
                 for upper in [3.0, f64::INFINITY] {
                     let best = place * place + 2.0 * place;
                     let mut program = Problem::new("fixed", &[0.0], best, move |x| {

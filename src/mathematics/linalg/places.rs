@@ -17,31 +17,36 @@ pub(super) struct Places {
 /// Emitted entries from which on work is divided among processors, and places are kept.
 const LARGE: usize = 1 << 16;
 /// Most emitted entries whose places are kept: 4 bytes each, and 8 for each place.
-const KEPT: usize = 1 << 27;
+const MOST: usize = 1 << 27;
 
 /// Places with the slots of an assembly.
 type Recorded = (Arc<Places>, Arc<[u32]>);
 
+/// Those that are kept, and whether the assembly emits all of the places.
+struct Kept {
+    recorded: Recorded,
+    whole: bool,
+}
+
 /// Those that were used last, the latest at the end.
-static RECORDED: Mutex<VecDeque<Recorded>> = Mutex::new(VecDeque::new());
+static KEPT: Mutex<VecDeque<Kept>> = Mutex::new(VecDeque::new());
 
 impl Places {
     /// The places (column, row) of an assembly of order `n`, and the slot of each of its entries.
     pub(super) fn record(n: usize, emitted: &[[u32; 2]]) -> Recorded {
-        let of_order = |own: &Recorded| own.0.order() == n;
+        let of_order = |own: &Kept| own.whole && own.recorded.0.order() == n;
         kept(of_order, emitted).unwrap_or_else(|| {
             let places = Arc::new(Self::of(n, emitted));
             let slots = places.slots(emitted).into();
-            keep((places, slots))
+            keep((places, slots), true)
         })
     }
 
     /// The slots of an assembly that emits some of these places.
     pub(super) fn slots_of(self: &Arc<Self>, emitted: &[[u32; 2]]) -> Arc<[u32]> {
-        let of_these = |own: &Recorded| Arc::ptr_eq(&own.0, self);
-        let found = kept(of_these, emitted)
-            .unwrap_or_else(|| keep((self.clone(), self.slots(emitted).into())));
-        found.1
+        let of_these = |own: &Kept| Arc::ptr_eq(&own.recorded.0, self);
+        let new = || keep((self.clone(), self.slots(emitted).into()), false);
+        kept(of_these, emitted).unwrap_or_else(new).1
     }
 
     /// Order of the matrix.
@@ -113,42 +118,49 @@ impl Places {
 }
 
 /// Kept places of this kind that are those of an assembly.
-fn kept(kind: impl Fn(&Recorded) -> bool, emitted: &[[u32; 2]]) -> Option<Recorded> {
+fn kept(kind: impl Fn(&Kept) -> bool, emitted: &[[u32; 2]]) -> Option<Recorded> {
     if emitted.len() < LARGE {
         return None;
     }
-    let may_be = |own: &&Recorded| kind(own) && own.1.len() == emitted.len();
+    let may_be = |own: &&Kept| kind(own) && own.recorded.1.len() == emitted.len();
     // Compared without the lock: others may record meanwhile.
-    let all: Vec<Recorded> = lock().iter().filter(may_be).cloned().collect();
+    let all: Vec<Recorded> = (lock().iter().filter(may_be))
+        .map(|own| own.recorded.clone())
+        .collect();
     let found = (all.into_iter().rev()).find(|(places, slots)| places.are_at(slots, emitted))?;
     let mut all = lock();
-    if let Some(at) = all.iter().position(|own| Arc::ptr_eq(&own.1, &found.1)) {
+    let is_found = |own: &Kept| Arc::ptr_eq(&own.recorded.1, &found.1);
+    if let Some(at) = all.iter().position(is_found) {
         let own = all.remove(at);
         all.extend(own);
     }
     Some(found)
 }
 
-fn keep(recorded: Recorded) -> Recorded {
-    if (LARGE..=KEPT).contains(&recorded.1.len()) {
+fn keep(recorded: Recorded, whole: bool) -> Recorded {
+    if (LARGE..=MOST).contains(&recorded.1.len()) {
         let mut all = lock();
-        all.push_back(recorded.clone());
-        while all.iter().map(|own| own.1.len()).sum::<usize>() > KEPT {
+        all.push_back(Kept {
+            recorded: recorded.clone(),
+            whole,
+        });
+        let count = |own: &Kept| own.recorded.1.len();
+        while all.iter().map(count).sum::<usize>() > MOST {
             all.pop_front();
         }
     }
     recorded
 }
 
-fn lock() -> std::sync::MutexGuard<'static, VecDeque<Recorded>> {
-    RECORDED.lock().unwrap_or_else(PoisonError::into_inner)
+fn lock() -> std::sync::MutexGuard<'static, VecDeque<Kept>> {
+    KEPT.lock().unwrap_or_else(PoisonError::into_inner)
 }
 
 #[cfg(test)]
 mod tests {
     use super::*;
 
-    /// A band of n unknowns and its width, from the last column if reversed.
+    /// A band of n unknowns and its width.
     fn band(n: u32, width: u32) -> Vec<[u32; 2]> {
         let column = |j: u32| (0..width).map(move |k| [j, (j + k) % n]);
         (0..n).flat_map(column).collect()
@@ -156,7 +168,7 @@ mod tests {
 
     #[test]
     fn places_of_an_assembly_are_recorded_once() {
-        let (n, width) = (LARGE / 8, 8);
+        let (n, width) = (LARGE / 4, 8);
         let emitted = band(n as u32, width);
         let first = Places::record(n, &emitted);
         let again = Places::record(n, &emitted);
@@ -170,6 +182,10 @@ mod tests {
         let slots = first.0.slots_of(&turned);
         assert!(first.0.are_at(&slots, &turned));
         assert!(Arc::ptr_eq(&slots, &first.0.slots_of(&turned)));
+        // A part of the places is not recorded as all of them.
+        let part = &emitted[..LARGE];
+        first.0.slots_of(part);
+        assert_eq!(Places::record(n, part).0.rows.len(), LARGE);
         let backwards: Vec<u32> = first.1.iter().rev().copied().collect();
         assert_eq!(*slots, backwards[..]);
     }

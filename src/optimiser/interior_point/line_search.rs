@@ -217,8 +217,8 @@ impl LineSearch<'_> {
         Ok(gains.then_some((point, slopes, s)))
     }
 
-    /// A step of the multipliers alone, at a point that rows fix to rounding, if it reduces the residual of the
-    /// optimality conditions.
+    /// A step of the multipliers alone, at a point that the direction does not change, as where rows fix it, if it reduces
+    /// the residual of the optimality conditions.
     fn multipliers_alone(&self, direction: Direction, alpha: f64) -> Option<Accepted> {
         let (point, slopes, s) = (&self.at.point, &self.at.slopes, &self.at.s);
         let gains = self.gains((point, slopes, s), &direction, alpha);

@@ -366,7 +366,7 @@ fn open<S: SolveScalar>(
 
 /// Estimated error of a step relative to the scene's scale (Hairer, Nørsett & Wanner 1993,
 /// eq. II.10.17): |e5|² / √(|e5|² + 0.01 |e3|²), and that of a step in which a force sets in or lets go: √(|e5|² + 0.01 |e3|²).
-/// There e3 is not larger than e5 by an order of h², and the first vanishes by chance where e5 does.
+/// There e3 is not larger than e5 by an order of h², and the first estimate vanishes by chance where e5 does.
 fn errors<S: SolveScalar>(
     stepper: &mut Stepper<S>,
     scale: &Scale,
