@@ -124,10 +124,10 @@ impl LineSearch<'_> {
                 }));
             }
             if !goes_on {
-                let stays = trials == 0 && here.theta == 0.0;
-                return Ok(stays
-                    .then(|| self.multipliers_alone(direction, longest))
-                    .flatten());
+                return Ok(match trials == 0 && here.theta == 0.0 {
+                    true => self.multipliers_alone(direction, longest),
+                    false => None,
+                });
             }
             trials += 1;
             let lengths = (alpha, alpha);

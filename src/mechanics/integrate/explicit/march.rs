@@ -157,7 +157,7 @@ pub fn march<S: SolveScalar>(
                     return smooth;
                 };
                 let last_stage = (&stepper.field.motions[..], (start + h).re());
-                let error = match !given && kinked > smooth && touches.change(model, last_stage) {
+                let error = match !given && touches.change(model, last_stage) {
                     true => kinked,
                     false => smooth,
                 };

@@ -247,20 +247,20 @@ impl Solver<'_> {
             return false;
         }
         let motions = self.layout.at_rest(&found.q);
-        let elastic = self.elastic_part(y.to_vec());
-        let heavy = self.layout.mass_product(self.model, &motions, &elastic);
-        dot(&heavy, &elastic) > DEFORMS * dot(&self.metric_product(&motions, y), y)
+        let whole = dot(&self.metric_product(&motions, y), y);
+        self.elastic_inertia(&motions, self.layout.expanded(y.to_vec())) > DEFORMS * whole
     }
 
-    /// The part of a change of positions or velocities that is of elastic coordinates.
-    fn elastic_part(&self, y: Vec<f64>) -> Vec<f64> {
-        let mut y = self.layout.expanded(y);
+    /// yᵀ M y of the elastic coordinates of an expanded motion, with the others at zero.
+    fn elastic_inertia(&self, motions: &[BodyMotion<f64>], mut y: Vec<f64>) -> f64 {
         for (body, six) in self.model.bodies.iter().zip(y.chunks_exact_mut(6)) {
             if body.role != Role::Elastic {
                 six.fill(0.0);
             }
         }
-        self.layout.compressed(y)
+        let elastic = self.layout.compressed(y);
+        let heavy = self.layout.mass_product(self.model, motions, &elastic);
+        dot(&heavy, &elastic)
     }
 
     /// A rate \[1/s²\] of a machine that nothing loads, of the size of its softest vibration; `None` if its loads of the rate
@@ -350,24 +350,19 @@ impl Solver<'_> {
         // NaN stays.
         let larger = |a: f64, b: f64| if b > a || b.is_nan() { b } else { a };
         let layout = self.layout;
-        let mut y = layout.expanded(change[layout.groups()[0].clone()].to_vec());
+        let y = layout.expanded(change[layout.groups()[0].clone()].to_vec());
         let mut size = 0.0;
-        let all = self.model.bodies.iter().zip(y.chunks_exact_mut(6));
+        let all = self.model.bodies.iter().zip(y.chunks_exact(6));
         for (i, (body, six)) in all.enumerate() {
             if body.role != Role::Elastic {
                 size = larger(size, layout.moved_of(i, six, self.scale));
-                six.fill(0.0);
             }
         }
         if self.model.flexible.is_empty() {
             return size;
         }
-        let elastic = layout.compressed(y);
-        let heavy = layout.mass_product(self.model, &layout.at_rest(&x.q), &elastic);
-        larger(
-            size,
-            (dot(&heavy, &elastic) / self.mass).sqrt() / self.scale,
-        )
+        let elastic = self.elastic_inertia(&layout.at_rest(&x.q), y);
+        larger(size, (elastic / self.mass).sqrt() / self.scale)
     }
 
     /// M̃ y, both for unknowns of velocity.
