@@ -453,6 +453,10 @@ fn plates_whose_bending_is_hidden_are_refused() {
     for thickness in [1e-6, 1e-7, 1e-8] {
         let mut file = thin_plate(thickness, 1e-4);
         faults_say(&file, &["round-off of the stiffest motions hides"]);
+        // Beside free motions too.
+        let mut free = file.clone();
+        free.as_object_mut().expect("an object").remove("joints");
+        faults_say(&free, &["round-off of the stiffest motions hides"]);
         let functions = file["functions"].as_object_mut().expect("functions");
         functions.retain(|name, _| !damped.contains(&name.as_str()));
         faults_say(&file, &["round-off of the stiffest motions hides"]);

@@ -1,7 +1,9 @@
 //! Problems of structures that do not move: gradients, estimated errors, optima, faults, fields.
 
 use flexbody_driver::statics::{StaticDesign, error};
-use flexbody_driver::{CheckedDerivative, KnownEvaluations, Optimisation, check, optimise};
+use flexbody_driver::{
+    CheckedDerivative, KnownEvaluations, Optimisation, Verdict, check, optimise,
+};
 use flexbody_figures::statics::fields;
 use flexbody_problem::{Override, Problem};
 use serde_json::Value;
@@ -76,6 +78,44 @@ fn gradients_of_the_shipped_problems_agree_with_the_complex_step() {
     assert_gradients("scordelis_lo", &shipped("scordelis_lo", &[]));
     let coarse = ["/structures/plate/mesh/plate/elements=[8,8]"];
     assert_gradients("plate_stress", &shipped("plate_stress", &coarse));
+}
+
+/// A derivative that is zero is no fault, however small the unit of its variable: reactions of a cantilever and stresses by
+/// Young's modulus, centres of mass by thickness.
+#[test]
+fn derivatives_that_are_zero_pass_the_check() {
+    let steel = json!({"young": 2e9, "poisson": 0.3, "density": 1500, "yield_stress": 3e7});
+    let plate = json!({"mesh": {"plate": {"length": 1.3, "width": 0.4, "elements": [3, 1]}}, "material": "steel",
+        "thickness": 0.02, "supports": {"held": {"nodes": "x0"}}});
+    let reaction = |direction: [i32; 3]| json!({"reaction": {"case": "a", "nodes": "x0", "direction": direction}});
+    let centre = |direction: [i32; 3]| json!({"centre_of_mass": {"direction": direction}});
+    let problem = parsed(&json!({
+        "version": 1, "name": "plate", "materials": {"steel": steel}, "structures": {"plate": plate},
+        "load_cases": {"a": {"edge": {"edge": {"edges": "x1", "force": [3, -7, 11]}}}},
+        "functions": {"x": reaction([1, 0, 0]), "y": reaction([0, 1, 0]), "z": reaction([0, 0, 1]),
+            "along": centre([1, 0, 0]), "across": centre([0, 0, 1]),
+            "stress": {"von_mises": {"rho": 50}}},
+        "variables": {"modulus": {"path": "/materials/steel/young", "lower": 1e6, "upper": 1e12},
+            "thickness": {"path": "/structures/plate/thickness", "lower": 0.001, "upper": 0.1}}
+    }));
+    let of = |name: &str| problem.function_names.iter().position(|own| own == name);
+    let found = check(&problem, &problem.start()).unwrap_or_else(|failure| panic!("{failure}"));
+    assert_eq!(found.len(), 12);
+    for d in &found {
+        let by_thickness = Some(d.function) == of("stress") && d.variable == 1;
+        let verdict = if by_thickness {
+            Verdict::Agree
+        } else {
+            Verdict::Nothing
+        };
+        assert_eq!(d.verdict(1e-10), verdict, "{d:?}");
+        // A hundred times the round-off is a fault.
+        let wrong = CheckedDerivative {
+            adjoint: d.adjoint + 1e4 * f64::EPSILON * d.terms,
+            ..d.clone()
+        };
+        assert_eq!(wrong.verdict(1e-13), Verdict::Differ, "{wrong:?}");
+    }
 }
 
 fn material() -> Value {

@@ -12,7 +12,7 @@ use super::contracted::contracted;
 use super::eigenpairs::{Cluster, clusters};
 use super::equations::State;
 use super::krylov::{GROWS, growing, lowest};
-use super::modes::{Vibration, WantedModes};
+use super::modes::{Vibration, WantedModes, without_modes};
 use super::pencil::{At, Matrices};
 use super::released::Released;
 use super::rest::FREE;
@@ -242,8 +242,8 @@ impl Solver<'_> {
         // Damping ratios tell whether a closed loop is stable.
         if turning.is_none() && !(damped && self.model.is_controlled()) {
             let stability = self.with_factors(found, |own| self.stability(own, found))??;
-            if stability.growth.is_some() {
-                return none("it is not stable".into());
+            if let Some(why) = without_modes(&stability) {
+                return none(why.into());
             }
         }
         let at = self.about(&released, found);

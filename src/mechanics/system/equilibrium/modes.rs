@@ -18,7 +18,7 @@ use super::contracted::{Between, contracted};
 use super::equations::{Layout, State};
 use super::matrix::Factors;
 use super::pencil::At;
-use super::rest::FLOOR;
+use super::rest::{FLOOR, Stability};
 use super::{KnownStarts, Solver};
 use crate::math::slices::{add_scaled, any_vector, dot};
 use crate::math::{Complex64, Scalar};
@@ -213,6 +213,20 @@ impl Softened<'_> {
     }
 }
 
+/// Why modes about a rest of this stability are refused.
+pub(super) fn without_modes(stability: &Stability) -> Option<&'static str> {
+    match stability {
+        Stability {
+            growth: Some(_), ..
+        } => Some("it is not stable"),
+        Stability {
+            hides_bending: true,
+            ..
+        } => Some(ROUND_OFF),
+        _ => None,
+    }
+}
+
 impl Solver<'_> {
     /// The lowest and the highest rate ω \[rad/s\] of the modes that are wanted; `None` if they are not found, or beside free
     /// motions.
@@ -255,19 +269,14 @@ impl Solver<'_> {
         found: &State<f64>,
         wanted: &WantedModes,
     ) -> Result<Option<Vec<Mode>>, AssemblyFailure> {
-        let none = |why: String| Err(AssemblyFailure::NoModes { why });
         let motions = self.layout.at_rest(&found.q);
         let mut softened = Softened {
             solver: self,
             motions: &motions,
             factors,
         };
-        let stability = self.stability(softened.factors, found)?;
-        if stability.growth.is_some() {
-            return none("it is not stable".into());
-        }
-        if stability.hides_bending {
-            return none(ROUND_OFF.into());
+        if let Some(why) = without_modes(&self.stability(softened.factors, found)?) {
+            return Err(AssemblyFailure::NoModes { why: why.into() });
         }
         let least = self.least_shift(found);
         let mut shift = least;
@@ -312,7 +321,7 @@ impl Solver<'_> {
                 }
                 if !all && free.len() == 0 && *shift > LEAST_SHIFT * self.least_shift(found) {
                     *shift *= LOWER;
-                    self.factorise_with(softened, found, *shift)?;
+                    self.factorise_with(softened.factors, found, *shift)?;
                     continue;
                 }
                 return none(match all {
@@ -331,7 +340,7 @@ impl Solver<'_> {
             let lower = highest.max(LEAST_SHIFT * self.least_shift(found));
             if free.len() == 0 && *shift > LARGE_SHIFT * lower {
                 *shift = lower;
-                self.factorise_with(softened, found, *shift)?;
+                self.factorise_with(softened.factors, found, *shift)?;
                 continue;
             }
             let Some(good) = self.refine(softened, found, (&free, &mut modes)) else {
@@ -342,7 +351,7 @@ impl Solver<'_> {
             let lowest = modes.first().map_or(0.0, |own| own.square);
             if free.len() > 0 && *shift < SMALL_SHIFT * FLOOR * lowest {
                 *shift = FLOOR * lowest;
-                self.factorise_with(softened, found, *shift)?;
+                self.factorise_with(softened.factors, found, *shift)?;
                 continue;
             }
             // σ M̃ hides modes of light bodies in large scenes. The search for damped ones is slower, and needs no M̃.
@@ -389,17 +398,6 @@ impl Solver<'_> {
             mode.left = Some(left);
             alike
         })
-    }
-
-    /// Makes the factors with a σ.
-    fn factorise_with(
-        &self,
-        softened: &mut Softened,
-        found: &State<f64>,
-        shift: f64,
-    ) -> Result<(), AssemblyFailure> {
-        let made = (softened.factors).make(self.layout, self.model, (found, shift));
-        made.map_err(|_| AssemblyFailure::Singular)
     }
 
     /// Whether K is symmetric, by two motions of low frequencies.

@@ -336,7 +336,7 @@ impl Matrices {
     /// A singular matrix.
     pub(super) fn factors<S: SolveScalar>(&self, s: S) -> Result<SparseLu<S>, SingularMatrix> {
         let matrix = self.combined(s);
-        if self.pattern.known_pivots().is_some() {
+        if self.have_nodes() {
             let mut factors = SparseLu::new(&self.pattern);
             if factors.factorise(&matrix).is_ok() && factors.solve_soundly(&matrix) {
                 return Ok(factors);

@@ -87,8 +87,17 @@ impl Solver<'_> {
         factors: &mut Factors,
         found: &State<f64>,
     ) -> Result<(), AssemblyFailure> {
-        let at = (found, self.least_shift(found));
-        let made = factors.make(self.layout, self.model, at);
+        self.factorise_with(factors, found, self.least_shift(found))
+    }
+
+    /// Makes the factors at a solution with a σ.
+    pub(super) fn factorise_with(
+        &self,
+        factors: &mut Factors,
+        found: &State<f64>,
+        shift: f64,
+    ) -> Result<(), AssemblyFailure> {
+        let made = factors.make(self.layout, self.model, (found, shift));
         made.map_err(|_| AssemblyFailure::Singular)
     }
 
