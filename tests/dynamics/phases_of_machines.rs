@@ -53,8 +53,8 @@ fn elastic_arms(count: usize, method: &Value) -> Value {
 fn gradients_of_elastic_bodies_through_events_are_exact() {
     let methods = [
         json!({"steps": 150, "method": {"radau": {"stages": 2}}}),
-        json!({"steps": 300, "method": {"bdf": {"order": 2}}}),
-        json!({"steps": 300, "method": {"generalised_alpha": {"radius": 0.6}}}),
+        json!({"steps": 200, "method": {"bdf": {"order": 2}}}),
+        json!({"steps": 200, "method": {"generalised_alpha": {"radius": 0.6}}}),
     ];
     for (count, method) in [(1, 0), (5, 0), (5, 1), (5, 2)] {
         let mut document = elastic_arms(count, &methods[method]);

@@ -103,8 +103,8 @@ fn bits(problem: &Problem) -> Vec<u64> {
 #[test]
 fn the_bits_do_not_depend_on_the_number_of_ranks() {
     let methods = [
-        (json!({"bdf": {"order": 2}}), [16, 4], 8),
-        (json!({"radau": {"stages": 3}}), [16, 2], 3),
+        (json!({"bdf": {"order": 2}}), [16, 4], 4),
+        (json!({"radau": {"stages": 3}}), [16, 2], 2),
     ];
     for (method, elements, steps) in methods {
         let file = plates(elements, 0.02, steps, &method);
@@ -127,15 +127,12 @@ fn the_bits_do_not_depend_on_the_number_of_ranks() {
 /// The complex step over ranks, against the adjoint over ranks.
 #[test]
 fn gradients_over_ranks_are_exact() {
-    let mut file = plates([16, 2], 0.02, 5, &json!({"bdf": {"order": 2}}));
+    let mut file = plates([16, 2], 0.02, 3, &json!({"bdf": {"order": 2}}));
     thick_and_soft(&mut file);
-    for ranks in [2, 3] {
-        let context = json!(format!("{ranks} ranks"));
-        let (_, calls) = over((ranks, usize::MAX), &file, |own| {
-            gradients_are_exact(own, &context)
-        });
-        assert!(calls > 100, "{calls}");
-    }
+    let (_, calls) = over((3, usize::MAX), &file, |own| {
+        gradients_are_exact(own, &json!("3 ranks"))
+    });
+    assert!(calls > 100, "{calls}");
 }
 
 /// The wish of one rank to end goes along with the numbers: all end at the same step.

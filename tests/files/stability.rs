@@ -142,7 +142,9 @@ fn fast() -> Vec<String> {
 #[test]
 fn few_extreme_scenes_of_every_family_are_not_wrong_without_a_word() {
     let mut families = BTreeSet::new();
-    let all = fast().into_iter().enumerate();
+    // Of shells in motion the method with the cheapest steps.
+    let is_cheap = |case: &String| !case.starts_with("shell-") || case.contains("/bdf");
+    let all = fast().into_iter().filter(is_cheap).enumerate();
     let some = all.filter(|(k, case)| {
         let family = case.split('/').next().unwrap_or_default().to_owned();
         families.insert(family) || k % 20 == 0
