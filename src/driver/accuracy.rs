@@ -1,9 +1,9 @@
 //! `--accuracy`: steps, samples and bases that reach an accuracy.
 
 use super::bases;
-use super::check::own_size;
 use super::error::estimate;
 use super::evaluate::Evaluated;
+use super::size::function_size;
 use crate::functions::Function;
 use crate::integrate::{IntegrationFailure, Spacing, Trajectory};
 use crate::problem::{Problem, Simulation, larger};
@@ -98,7 +98,7 @@ impl Judged {
 
     /// Whether this difference or value is round-off of functions of its kind.
     fn is_round_off(&self, x: f64, at: &Evaluated) -> bool {
-        x.abs() <= ROUND_OFF * own_size(at, self.function)
+        x.abs() <= ROUND_OFF * function_size(at, self.function)
     }
 }
 

@@ -6,9 +6,9 @@
 //! are meaningless. T is computed by one complex step, and only if a derivative is so large that ε
 //! Δx df/dx reaches the size of its function.
 
-use super::check::own_size;
 use super::evaluate::Evaluated;
 use super::integration::Integration;
+use super::size::function_size;
 use crate::integrate::{Samples, Settings, Spacing, Trajectory, simulate};
 use crate::math::scalar::COMPLEX_STEP;
 use crate::math::{Complex64, Scalar};
@@ -77,7 +77,7 @@ pub fn of_motion(problem: &Problem, at: &Evaluated, which: &[usize]) -> Option<C
     };
     let mut suspicious: Vec<(f64, usize)> = Vec::new();
     for (&f, gradient) in which.iter().zip(&gradients) {
-        let size = own_size(at, f);
+        let size = function_size(at, f);
         let ratio = |(i, d): (usize, &f64)| (error * (d * change(i)).abs() / size, i);
         suspicious.extend(gradient.iter().enumerate().map(ratio));
     }

@@ -7,10 +7,10 @@
 //! its scale, is judged by a tenth of the largest one; one that changes the function by less than
 //! its round-off counts as zero.
 
-use super::check::{largest_datum, own_size};
 use super::error::{self, FunctionError};
 use super::evaluate::Evaluated;
 use super::integration::Integration;
+use super::size::{function_size, largest_datum};
 use crate::functions::Function;
 use crate::integrate::{IntegrationFailure, Method, Samples, Settings, Spacing, simulate};
 use crate::problem::Problem;
@@ -228,7 +228,7 @@ fn sizes(problem: &Problem, at: &Evaluated, f: usize, gradient: &[f64]) -> Vec<f
     let nothing = match misfits.iter().filter_map(largest_of).reduce(f64::max) {
         // Residuals of a part of a standard deviation count as zero.
         Some(datum) => OF_DEVIATION * datum,
-        None => NOTHING / LARGEST * own_size(at, f),
+        None => NOTHING / LARGEST * function_size(at, f),
     };
     let of = |(i, d): (usize, &f64)| {
         let change = scale(i).max(at.x[i].abs());

@@ -8,7 +8,7 @@ use std::borrow::Cow;
 
 /// Longest name [characters].
 const LONGEST: usize = 200;
-/// Entries of a file that are prose. They may have lines and any length.
+/// Ends of the pointers of texts that are prose. They may have lines and any length.
 const PROSE: [&str; 2] = ["/description", "/$schema"];
 
 /// Whether a character is invisible: controls, line and paragraph separators, and marks of writing
@@ -79,7 +79,7 @@ fn walk(value: &Value, pointer: &str, findings: &mut Vec<Finding>) {
                 }
             }
         }
-        Value::String(text) if !PROSE.contains(&pointer) => {
+        Value::String(text) if !PROSE.iter().any(|prose| pointer.ends_with(prose)) => {
             findings.extend(fault(text, pointer).map(|finding| Finding {
                 part: Part::Value,
                 ..finding
@@ -145,6 +145,19 @@ mod tests {
             assert!(fault(text, "").is_some());
         }
         assert_eq!(visible_lines("a\n\tb\r"), "a\n\tb\\u{d}");
+    }
+
+    /// Remarks may have lines and any length wherever they stand, names may not.
+    #[test]
+    fn descriptions_are_prose() {
+        let long = format!("a\n{}", "b".repeat(300));
+        let remark =
+            serde_json::json!({"description": long, "bodies": {"arm": {"description": long}}});
+        assert!(faults(&remark).is_empty());
+        let name =
+            serde_json::json!({"bodies": {"arm": {"material": long}}, "description": {"x": long}});
+        let places = faults(&name);
+        assert_eq!(places.len(), 2, "{places:?}");
     }
 
     #[test]

@@ -1,9 +1,10 @@
 //! Runs one case and judges what the program reports.
 
 use super::case::{Case, Judge};
+use crate::CheckedDerivative;
 use crate::analysed::Simulated;
 use crate::certificate::{self, certify};
-use crate::check::{CheckedDerivative, check};
+use crate::check::check;
 use crate::integrate::{Method, Spacing};
 use crate::optimiser::Status;
 use crate::problem::{Override, Problem};

@@ -2,14 +2,10 @@
 
 use super::lifted::along;
 use super::{StaticDesign, StaticsFailure};
-use crate::CheckedDerivative;
-use crate::evaluate::Derivative;
+use crate::checked::{CheckedDerivative, checked_row};
 use crate::problem::{Asked, Problem};
 use crate::structures::functions::Function;
 use rayon::prelude::*;
-
-/// The least change of a variable, over its scale, to which round-off of a function is related.
-const LEAST: f64 = 1e-4;
 
 /// Derivatives of all functions in all variables at a solved design.
 ///
@@ -34,32 +30,12 @@ pub fn check(
         })
         .collect();
     let columns = columns?;
-    let mut all = Vec::with_capacity(which.len() * count);
-    for &f in &which {
-        let largest = largest_change(problem, &gradients[f]);
-        let size = size_of(at, f);
-        for i in 0..count {
-            let Derivative { value, terms } = gradients[f][i];
-            let scale = problem.variables[i].scale;
-            let by_size = size / change_of(at.x[i], scale);
-            all.push(CheckedDerivative {
-                function: f,
-                variable: i,
-                adjoint: value,
-                complex_step: columns[i][f],
-                terms: terms.max(largest / scale).max(by_size),
-                in_use: value,
-            });
-        }
-    }
-    Ok(all)
-}
-
-/// The change of a function by a typical change of the variable that changes it most.
-fn largest_change(problem: &Problem, gradient: &[Derivative]) -> f64 {
-    let scaled = gradient.iter().zip(&problem.variables);
-    let largest = scaled.map(|(d, v)| (d.value * v.scale).abs());
-    largest.fold(0.0, f64::max)
+    let rows = which.iter().map(|&f| {
+        let row = &gradients[f];
+        let others = |i: usize| (columns[i][f], row[i].value);
+        checked_row((problem, &at.x), (f, size_of(at, f)), row, others)
+    });
+    Ok(rows.flatten().collect())
 }
 
 /// The size of a function whose last digits are its round-off: its value, or the largest coordinate if it is a place.
@@ -74,15 +50,6 @@ fn size_of(at: &StaticDesign, f: usize) -> f64 {
         _ => 0.0,
     };
     size.max(at.function(f).value.abs())
-}
-
-/// The change of a variable to which the round-off of a function belongs: the variable's own size, as terms that cancel are in
-/// proportion to powers of it, and between 1e-4 of its scale and the scale.
-fn change_of(x: f64, scale: f64) -> f64 {
-    match x.abs() {
-        0.0 => scale,
-        x => x.clamp(LEAST * scale, scale),
-    }
 }
 
 /// The derivatives of all functions along a direction: by the adjoint, by the complex step, the sum of the

@@ -11,9 +11,8 @@
 //! at its end moves with (x, z_p) as in `driver/event.rs`.
 
 use super::{InCases, of_case};
-use crate::CheckedDerivative;
 use crate::analysed::{Analysed, AnalysisFailure, Simulated};
-use crate::check::own_size;
+use crate::checked::{CheckedDerivative, checked_row};
 use crate::composed::{Derivative, infinitesimal};
 use crate::error::{Estimate, FunctionError, halved};
 use crate::evaluate::Evaluated;
@@ -23,6 +22,7 @@ use crate::integrate::{IntegrationFailure, Settings, WorkCounts};
 use crate::integration::Integration;
 use crate::math::{Complex64, scalar::COMPLEX_STEP};
 use crate::problem::{Case, Cases, EndCotangent, Problem};
+use crate::size::function_size;
 use rayon::prelude::*;
 use std::sync::Arc;
 
@@ -339,28 +339,16 @@ pub(in crate::analysed) fn check(
     };
     let (adjoint, _) = derivatives(same, &which)?;
     let (in_use, _) = derivatives(&at, &which)?;
-    let scale = |i: usize| problem.variables[i].scale;
-    let one = |f: usize, i: usize| {
-        let sizes = adjoint[f].iter().enumerate();
-        let sizes = sizes.map(|(j, d)| d.value.abs() * scale(j));
-        let largest = sizes.fold(0.0, f64::max) / scale(i);
-        let change = scale(i).max(x[i].abs());
-        CheckedDerivative {
-            function: f,
-            variable: i,
-            adjoint: adjoint[f][i].value,
-            complex_step: found[i].0[f],
-            terms: (adjoint[f][i].terms.max(largest)).max(size(same, f) / change),
-            in_use: in_use[f][i].value,
-        }
-    };
     // A function may have no value in a phase that no function of the whole motion needs.
     let first = problem.composition.first;
     let told = which
         .iter()
         .filter(|&&f| f >= first || at.value(f).is_finite());
-    let pairs = told.flat_map(|&f| (0..x.len()).map(move |i| (f, i)));
-    Ok(pairs.map(|(f, i)| one(f, i)).collect())
+    let rows = told.map(|&f| {
+        let others = |i: usize| (found[i].0[f], in_use[f][i].value);
+        checked_row((problem, x), (f, size(same, f)), &adjoint[f], others)
+    });
+    Ok(rows.flatten().collect())
 }
 
 /// For every function: its derivative along a direction by the adjoint and by a complex step, Σ |g_i d_i|, and the size of its
@@ -406,7 +394,7 @@ fn repeated(problem: &Problem, all: &InCases<Simulated>) -> InCases<Analysed> {
 /// The size of a function that determines its round-off.
 fn size(all: &InCases<Analysed>, f: usize) -> f64 {
     let own = |k: usize| match all.place(k) {
-        Some((_, Analysed::Motion(at), f)) => own_size(at, f),
+        Some((_, Analysed::Motion(at), f)) => function_size(at, f),
         _ => 0.0,
     };
     if !all.composition.gives(f) {
