@@ -29,26 +29,25 @@ fn values(problem: &Problem) -> Vec<f64> {
 /// small factor.
 #[test]
 fn ball_joints_close_to_each_other_are_a_hinge() {
-    hinges(&[(1e-6, 1.1, 1e-9, Value::Null)]);
-}
-
-#[test]
-#[ignore = "half a minute"]
-fn more_ball_joints_close_to_each_other_are_a_hinge() {
+    let radau = |stages: usize| json!({"radau": {"stages": stages}});
     hinges(&[
-        (3e-6, 1.3, 1e-8, json!({"radau": {"stages": 3}})),
-        (1e-5, 1.0, 1e-9, json!({"radau": {"stages": 3}})),
-        (1e-6, 0.7, 1e-9, json!({"radau": {"stages": 3}})),
-        (1e-6, 1.6, 1e-7, json!({"radau": {"stages": 2}})),
-        (3e-7, 0.9, 1e-8, Value::Null),
+        (1e-6, 1.1, (0.2, 1e-9), Value::Null),
+        (1e-6, 1.1, (0.4, 1e-9), Value::Null),
+        (1e-6, 1.1, (0.8, 1e-9), Value::Null),
+        (1e-6, 1.1, (1.6, 1e-9), Value::Null),
+        (3e-7, 0.9, (0.8, 1e-8), Value::Null),
+        (3e-6, 1.3, (0.8, 1e-8), radau(3)),
+        (1e-5, 1.0, (0.8, 1e-9), radau(3)),
+        (1e-6, 0.7, (0.8, 1e-9), radau(3)),
+        (1e-6, 1.6, (0.8, 1e-7), radau(2)),
     ]);
 }
 
-/// By distance, width of the door, tolerance and method.
-fn hinges(cases: &[(f64, f64, f64, Value)]) {
+/// By distance, width of the door, duration and tolerance, and method.
+fn hinges(cases: &[(f64, f64, (f64, f64), Value)]) {
     let hinge = r#"/joints={"hinge":{"revolute":{"between":["door","ground"],"at":"door.first","axis":[0,0,1]}}}"#;
-    for &(distance, width, tolerance, ref method) in cases {
-        let mut simulation = json!({"duration": 0.8, "tolerance": tolerance});
+    for &(distance, width, (duration, tolerance), ref method) in cases {
+        let mut simulation = json!({"duration": duration, "tolerance": tolerance});
         if !method.is_null() {
             simulation["method"] = method.clone();
         }
@@ -56,7 +55,7 @@ fn hinges(cases: &[(f64, f64, f64, Value)]) {
         let exact = [
             size.clone(),
             hinge.into(),
-            r#"/simulation={"duration":0.8,"tolerance":1e-12}"#.into(),
+            format!(r#"/simulation={{"duration":{duration},"tolerance":1e-12}}"#),
         ];
         let exact = values(&extreme("door", &exact));
         let close = [

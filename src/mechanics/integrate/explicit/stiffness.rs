@@ -2,8 +2,8 @@
 //!
 //! A scene is suspicious if h |λ| is near the border of the stability region, or if the motion is
 //! so smooth that round-off hides |λ|. With a smaller h |λ| stiffness is still possible: at tight
-//! tolerances, vibration that does not show may bound the steps. Then Radau IIA marches on from the
-//! present state until it has spent a fixed amount of work, and the paces of both methods are
+//! tolerances, vibration that does not show may bound the steps. After many steps it is possible in any scene. Then Radau IIA
+//! marches on from the present state until it has spent a fixed amount of work, and the paces of both methods are
 //! compared. Elastic bodies are stiff in any case where stability bounds the steps. Work is counted in evaluations of the accelerations, so the decision does not depend
 //! on the machine.
 
@@ -43,11 +43,11 @@ const NOT_STIFF: usize = 6;
 /// Differences of states below this, relative to their scale, are round-off.
 const NOISE: f64 = 1e-13;
 
-/// Number of steps before the first comparison of the methods, if the scene is suspicious or if
-/// stiffness is possible, which it always is with elastic bodies; and the factor between the numbers of steps before consecutive
-/// comparisons.
-const FIRST: [usize; 2] = [40, 500];
-const FIRST_FLEXIBLE: [usize; 2] = [40, 100];
+/// Number of steps before the first comparison of the methods: if the scene is suspicious; if stiffness is possible, which it
+/// always is with elastic bodies; and in any scene, as round-off may bound explicit steps where it hardly bounds implicit ones.
+/// And the factor between the numbers of steps before consecutive comparisons.
+const FIRST: [usize; 3] = [40, 500, 5000];
+const FIRST_FLEXIBLE: [usize; 3] = [40, 100, 5000];
 const AGAIN: usize = 4;
 /// Least number of steps over which the pace is measured.
 const RECENT: usize = 32;
@@ -101,8 +101,8 @@ pub struct Stiffness {
     possible: Streak,
     /// Fraction of the duration and work at two earlier steps; the later one is last.
     earlier: [(f64, f64); 2],
-    /// Numbers of steps before the next comparison: if suspicious, and if possible.
-    next: [usize; 2],
+    /// Numbers of steps before the next comparison: if suspicious, if possible, and in any scene.
+    next: [usize; 3],
 }
 
 impl Stiffness {
@@ -154,7 +154,10 @@ impl Stiffness {
         let suspicious = self.suspicious.count(hidden || beyond(SUSPICIOUS));
         let possible = !known || beyond(POSSIBLE) || self.flexible;
         let possible = self.possible.count(possible);
-        (suspicious && steps >= self.next[0]) || (possible && steps >= self.next[1])
+        [suspicious, possible, true]
+            .into_iter()
+            .zip(self.next)
+            .any(|(applies, least)| applies && steps >= least)
     }
 
     /// Decides on a suspicious scene at the end of `run`, in the state `at`. If the implicit method
