@@ -52,7 +52,7 @@ pub fn check(problem: &Problem, x: &[f64]) -> Result<Vec<CheckedDerivative>, Int
     let (adjoint, _) = same.derivatives(problem, &which)?;
     let (in_use, _) = in_use.gradients(problem, &which)?;
     let rows = which.iter().map(|&f| {
-        let others = |i: usize| (steps[i].derivatives[f], in_use[f][i]);
+        let others = |i: usize| (steps[i].derivatives[f], Some(in_use[f][i]));
         checked_row(
             (problem, x),
             (f, function_size(&same, f)),

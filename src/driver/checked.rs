@@ -33,8 +33,8 @@ pub struct CheckedDerivative {
     /// to which its round-off belongs.
     pub terms: f64,
     /// By the discrete adjoint, on the motion that an optimisation would see. The two motions
-    /// differ by round-off, which a sensitive motion magnifies.
-    pub in_use: f64,
+    /// differ by round-off, which a sensitive motion magnifies. None at rest, where both are the same solution.
+    pub in_use: Option<f64>,
 }
 
 /// How the two values of a derivative compare.
@@ -86,22 +86,24 @@ impl CheckedDerivative {
 
     /// Whether the derivative is only the round-off of cancelling terms: both values are below 64 ε
     /// times the terms. Or they are below 1e-10 of these, and motions that differ by round-off change more than a hundredth
-    /// of the derivative, or the adjoint is zero on both motions, as of one that drives and welds determine.
+    /// of the derivative, or the adjoint is exactly zero, as of a motion that drives and welds determine.
     pub fn is_round_off(&self) -> bool {
         // Comparisons with NaN are false.
         let below = |most: f64| self.adjoint.abs() <= most && self.complex_step.abs() <= most;
-        let moved = (self.in_use - self.adjoint).abs();
-        let nothing = self.adjoint == 0.0 && self.in_use == 0.0;
-        below(self.round_off())
-            || below(NOTHING * self.terms) && (nothing || below(moved / UNCERTAIN))
+        let nothing = self.adjoint == 0.0 && self.in_use.is_none_or(|x| x == 0.0);
+        let is_moved = || self.moved().is_some_and(|moved| below(moved / UNCERTAIN));
+        below(self.round_off()) || below(NOTHING * self.terms) && (nothing || is_moved())
     }
 
     /// Whether the derivative is below 1e-3 of its terms and its two values differ by at most their
-    /// round-off: 64 ε times the terms, and what round-off of the motion changes, up to 1e-12 of the terms.
+    /// round-off: 64 ε times the terms, and what round-off of the motion changes, up to 1e-12 of the terms. At rest, where
+    /// nothing tells how much that is, 1e-12 of the terms.
     pub fn differs_by_round_off(&self) -> bool {
         let small = self.complex_step.abs() <= SMALL * self.terms;
-        let moved = (self.in_use - self.adjoint).abs();
-        let most = self.round_off() + (SEVERAL * moved).min(MOVED * self.terms);
+        let most = MOVED * self.terms;
+        let moved = self.moved();
+        let moved = moved.map_or(most, |moved| most.min(SEVERAL * moved));
+        let most = self.round_off() + moved;
         small && (self.adjoint - self.complex_step).abs() <= most
     }
 
@@ -115,9 +117,14 @@ impl CheckedDerivative {
         64.0 * f64::EPSILON * self.terms
     }
 
+    /// What round-off of the motion changes.
+    fn moved(&self) -> Option<f64> {
+        Some((self.in_use? - self.adjoint).abs())
+    }
+
     /// Relative change of the derivative by round-off in the motion.
     pub fn noise(&self) -> f64 {
-        self.relative(self.in_use, self.adjoint)
+        (self.in_use).map_or(0.0, |in_use| self.relative(in_use, self.adjoint))
     }
 }
 
@@ -130,7 +137,7 @@ pub(super) fn checked_row(
     (problem, x): (&Problem, &[f64]),
     (function, size): (usize, f64),
     adjoint: &[Derivative],
-    others: impl Fn(usize) -> (f64, f64),
+    others: impl Fn(usize) -> (f64, Option<f64>),
 ) -> Vec<CheckedDerivative> {
     let scaled = adjoint.iter().zip(&problem.variables);
     let largest = scaled.fold(0.0_f64, |m, (d, own)| m.max((d.value * own.scale).abs()));
@@ -172,17 +179,17 @@ mod tests {
             adjoint,
             complex_step,
             terms: 1.0,
-            in_use: adjoint,
+            in_use: Some(adjoint),
         };
         let noisy = |in_use: f64| CheckedDerivative {
-            in_use,
+            in_use: Some(in_use),
             ..pair(1.0 + 1e-10, 1.0)
         };
         assert!(noisy(1.0 + 3e-10).differs_by_noise());
         assert!(!noisy(1.0 + 1e-10).differs_by_noise() && !noisy(1.1).differs_by_noise());
         // Less than round-off of the terms could leave, and not the same in two motions.
         let nearly = |in_use: f64| CheckedDerivative {
-            in_use,
+            in_use: Some(in_use),
             ..pair(3e-12, 1e-30)
         };
         assert!(nearly(2e-12).is_round_off());
@@ -200,7 +207,7 @@ mod tests {
             assert_eq!(pair(a, b).verdict(1e-10), Verdict::Differ);
         }
         let of_nothing = CheckedDerivative {
-            in_use: 1e-9,
+            in_use: Some(1e-9),
             ..pair(1e-9 + 1e-18, 0.0)
         };
         assert!(!of_nothing.differs_by_noise());
@@ -211,10 +218,16 @@ mod tests {
         assert!(!wrong.is_round_off() && !wrong.differs_by_round_off());
         // What two motions differ by is no fault, if little is left of large terms.
         let settled = |difference: f64| CheckedDerivative {
-            in_use: 1e-8 + 5e-14,
+            in_use: Some(1e-8 + 5e-14),
             ..pair(1e-8 + difference, 1e-8)
         };
         assert!(settled(1e-13).differs_by_round_off() && !settled(2e-12).differs_by_round_off());
+        // At rest there is no other motion.
+        let at_rest = |difference: f64| CheckedDerivative {
+            in_use: None,
+            ..pair(1e-8 + difference, 1e-8)
+        };
+        assert!(at_rest(8e-13).differs_by_round_off() && !at_rest(2e-12).differs_by_round_off());
         let nothing = pair(1e-15, -1e-15);
         assert!(nothing.is_round_off() && nothing.differs_by_round_off());
         assert!(!pair(f64::NAN, 0.0).differs_by_round_off());

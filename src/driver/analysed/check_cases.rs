@@ -51,7 +51,7 @@ pub(super) fn check(
             adjoint: f64::NAN,
             complex_step: f64::NAN,
             terms: f64::NAN,
-            in_use: f64::NAN,
+            in_use: None,
         };
         numbered.get(&(k, i)).map_or(unknown, |own| (*own).clone())
     };
@@ -73,13 +73,15 @@ pub(super) fn check(
                 moving().map(|&(k, by)| by * of_one(&of(k, variable))).sum()
             };
             let terms = moving().map(|&(k, by)| (by * of(k, variable).terms).abs());
+            let in_use = moving().map(|&(k, by)| Some(by * of(k, variable).in_use?));
+            let in_use: Option<f64> = in_use.sum();
             composed.push(CheckedDerivative {
                 function,
                 variable,
                 adjoint: direct + sum(&|own| own.adjoint),
                 complex_step: columns[variable][function],
                 terms: direct.abs() + terms.sum::<f64>(),
-                in_use: direct + sum(&|own| own.in_use),
+                in_use: in_use.map(|sum| direct + sum),
             });
         }
     }

@@ -345,7 +345,7 @@ pub(in crate::analysed) fn check(
         .iter()
         .filter(|&&f| f >= first || at.value(f).is_finite());
     let rows = told.map(|&f| {
-        let others = |i: usize| (found[i].0[f], in_use[f][i].value);
+        let others = |i: usize| (found[i].0[f], Some(in_use[f][i].value));
         checked_row((problem, x), (f, size(same, f)), &adjoint[f], others)
     });
     Ok(rows.flatten().collect())
