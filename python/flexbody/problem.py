@@ -126,7 +126,7 @@ class CheckedDerivative:
     adjoint: float
     complex_step: float
     difference: float
-    """|adjoint − complex step| relative to the complex step; absolute if that is zero."""
+    """|adjoint − complex step| relative to the complex step; to the size of its terms if that is zero."""
     agrees: bool
     """Whether the difference is below the tolerance, or is the round-off of larger terms."""
 
