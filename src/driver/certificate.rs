@@ -253,7 +253,7 @@ fn certified(
                     };
                     named(problem, differing(gradient, direction, along)?)
                 }
-                false => not_finite(problem, at, gradient),
+                false => not_finite(problem, gradient) + &body(at),
             };
             found.faults.push(format!(
                 "the derivative of \"{name}\" is {:.15e} by the adjoint and {:.15e} by the complex \
@@ -404,14 +404,12 @@ fn named(problem: &Problem, differs: Option<usize>) -> String {
     }
 }
 
-/// Origin of a derivative that is not finite: the first such variable, and the body and step from
-/// which on the motion is not finite.
-fn not_finite(problem: &Problem, at: &Evaluated, gradient: &[Derivative]) -> String {
-    let mut text = String::new();
-    if let Some(i) = gradient.iter().position(|d| !d.value.is_finite()) {
-        text.push_str(&format!("; not finite in {}", variable(problem, i)));
-    }
-    text + &body(at)
+/// Names the first variable in which a derivative is not finite.
+fn not_finite(problem: &Problem, gradient: &[Derivative]) -> String {
+    let first = gradient.iter().position(|d| !d.value.is_finite());
+    first.map_or_else(String::new, |i| {
+        format!("; not finite in {}", variable(problem, i))
+    })
 }
 
 #[cfg(test)]
@@ -453,5 +451,25 @@ mod tests {
         let many = vec![Derivative::default(); LOOKED_AT + 1];
         let never = |_: &[f64]| panic!("too many runs");
         assert_eq!(differing(&many, &[0.0; LOOKED_AT + 1], never), Ok(None));
+    }
+
+    /// Variables are named with their place in the file.
+    #[test]
+    fn variables_are_named_with_their_place() {
+        let text = r#"{"version": 1, "name": "fall", "gravity": [0, -9.81, 0],
+            "bodies": {"ball": {"shape": {"sphere": {"radius": 0.1}}, "mass": 2}},
+            "simulation": {"duration": 0.4},
+            "functions": {"y": {"final": {"position": {"body": "ball", "direction": [0, 1, 0]}}}},
+            "variables": {"mass": {"path": "/bodies/ball/mass", "lower": 1, "upper": 3},
+                          "pull": {"path": "/gravity/1", "lower": -9.9, "upper": -9.7}}}"#;
+        let problem = Problem::parse(text, "fall.json", &[]);
+        let problem = problem.unwrap_or_else(|faults| panic!("{faults}"));
+        let most = "; they differ most in \"pull\" (/gravity/1)";
+        assert_eq!(named(&problem, Some(1)), most);
+        let mut gradient = vec![Derivative::default(); 2];
+        assert_eq!(not_finite(&problem, &gradient), "");
+        gradient[0].value = f64::NAN;
+        let first = "; not finite in \"mass\" (/bodies/ball/mass)";
+        assert_eq!(not_finite(&problem, &gradient), first);
     }
 }

@@ -100,11 +100,9 @@ impl CheckedDerivative {
     /// nothing tells how much that is, 1e-12 of the terms.
     pub fn differs_by_round_off(&self) -> bool {
         let small = self.complex_step.abs() <= SMALL * self.terms;
-        let most = MOVED * self.terms;
-        let moved = self.moved();
-        let moved = moved.map_or(most, |moved| most.min(SEVERAL * moved));
-        let most = self.round_off() + moved;
-        small && (self.adjoint - self.complex_step).abs() <= most
+        let largest = MOVED * self.terms;
+        let by_motion = self.moved().map_or(largest, |x| largest.min(SEVERAL * x));
+        small && (self.adjoint - self.complex_step).abs() <= self.round_off() + by_motion
     }
 
     /// Whether its two values differ by no more than what Newton's method leaves, and that is little.

@@ -155,6 +155,22 @@ fn reactions_that_a_modulus_does_not_change_pass_the_check() {
     }
 }
 
+/// The memory of an estimate follows from the entries of the factor.
+#[test]
+fn a_solution_knows_the_entries_of_its_factor() {
+    let problem = parsed(&json!({
+        "version": 1, "name": "plate", "materials": material(),
+        "structures": {"plate": {
+            "mesh": {"plate": {"length": 1, "width": 1, "elements": [4, 3]}}, "material": "metal", "thickness": 0.01,
+            "supports": {"edges": {"nodes": ["x0"]}}
+        }},
+        "load_cases": {"pressure": {"p": {"pressure": {"faces": "all", "pressure": 10}}}},
+        "functions": {"compliance": {"compliance": {"case": "pressure"}}}
+    }));
+    let entries = solved(&problem).factor_entries().expect("a factor");
+    assert!(entries > 1000, "{entries}");
+}
+
 fn material() -> Value {
     json!({"metal": {"young": 70e9, "poisson": 0.3, "density": 2700, "yield_stress": 270e6}})
 }
